@@ -1,0 +1,163 @@
+#define _GNU_SOURCE
+#include "base/file.h"
+
+#include <errno.h>
+#include <fcntl.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <strings.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+enum { READ_BYTES = 1 << 20 };
+
+static dem_status refuse(dem_error *error, const char *path, const char *what)
+{
+    return dem_fail_at(error, DEM_BAD_INPUT, path, 0, "%s", what);
+}
+
+static dem_status read_all(int file, const char *path, dem_buffer *bytes, dem_error *error)
+{
+    struct stat about;
+    if (fstat(file, &about) == 0) {
+        if (S_ISDIR(about.st_mode))
+            return refuse(error, path, "is a directory; name a file in it");
+        if (S_ISREG(about.st_mode) && about.st_size > 0) {  // one allocation instead of growing
+            bytes->data = malloc((size_t)about.st_size + 2);
+            if (!bytes->data)
+                return dem_fail_memory(error);
+            bytes->capacity = (size_t)about.st_size + 2;
+        }
+    }
+    for (;;) {
+        if (bytes->capacity - bytes->size < 2) {
+            size_t wanted = bytes->capacity * 2 + READ_BYTES;
+            char *grown = realloc(bytes->data, wanted);
+            if (!grown)
+                return dem_fail_memory(error);
+            bytes->data = grown;
+            bytes->capacity = wanted;
+        }
+        ssize_t got = read(file, bytes->data + bytes->size, bytes->capacity - bytes->size - 1);
+        if (got < 0 && errno == EINTR)
+            continue;
+        if (got < 0)
+            return refuse(error, path, strerror(errno));
+        if (got == 0)
+            break;
+        bytes->size += (size_t)got;
+    }
+    bytes->data[bytes->size] = 0;
+    return bytes->size ? DEM_OK : refuse(error, path, "file is empty; nothing to read");
+}
+
+dem_status dem_file_read(const char *path, dem_buffer *bytes, dem_error *error)
+{
+    *bytes = (dem_buffer){0};
+    if (strcmp(path, "-") == 0) {
+        dem_status status = read_all(STDIN_FILENO, "standard input", bytes, error);
+        if (status != DEM_OK)
+            dem_buffer_release(bytes);
+        return status;
+    }
+    int file = open(path, O_RDONLY | O_CLOEXEC);
+    if (file < 0) {
+        struct stat link;
+        if (errno == ENOENT && lstat(path, &link) == 0)
+            return refuse(error, path, "is a link to a file that does not exist; mend the link");
+        if (errno == ENOENT)
+            return refuse(error, path, "no such file; check the name");
+        if (errno == EACCES)
+            return refuse(error, path, "permission denied; make it readable (chmod +r)");
+        return refuse(error, path, strerror(errno));
+    }
+    dem_status status = read_all(file, path, bytes, error);
+    close(file);
+    if (status != DEM_OK)
+        dem_buffer_release(bytes);
+    return status;
+}
+
+static bool write_all(int file, const char *bytes, size_t size)
+{
+    while (size) {
+        ssize_t put = write(file, bytes, size);
+        if (put < 0 && errno == EINTR)
+            continue;
+        if (put <= 0)
+            return false;
+        bytes += put;
+        size -= (size_t)put;
+    }
+    return true;
+}
+
+static dem_status cannot_write(dem_error *error, const char *path)
+{
+    return dem_fail_at(error, DEM_CANNOT_WRITE, path, 0, "cannot write: %s; choose another place with -o",
+                       strerror(errno));
+}
+
+static dem_status write_directly(int file, const char *path, const void *bytes, size_t size, dem_error *error)
+{
+    return write_all(file, bytes, size) ? DEM_OK : cannot_write(error, path);
+}
+
+dem_status dem_file_write(const char *path, const void *bytes, size_t size, dem_error *error)
+{
+    if (strcmp(path, "-") == 0)
+        return write_directly(STDOUT_FILENO, "standard output", bytes, size, error);
+    struct stat about;
+    if (stat(path, &about) == 0 && !S_ISREG(about.st_mode)) {
+        int file = open(path, O_WRONLY | O_CLOEXEC);
+        if (file < 0)
+            return cannot_write(error, path);
+        dem_status status = write_directly(file, path, bytes, size, error);
+        if (close(file) != 0 && status == DEM_OK)
+            status = cannot_write(error, path);
+        return status;
+    }
+    char *beside;
+    if (asprintf(&beside, "%s.XXXXXX", path) < 0)
+        return dem_fail_memory(error);
+    dem_status status = DEM_OK;
+    int file = mkostemp(beside, O_CLOEXEC);
+    if (file < 0) {
+        status = cannot_write(error, path);
+        free(beside);
+        return status;
+    }
+    mode_t mask = umask(0);
+    umask(mask);
+    fchmod(file, 0666 & ~mask);
+    if (!write_all(file, bytes, size) || fsync(file) != 0)
+        status = cannot_write(error, path);
+    if (close(file) != 0 && status == DEM_OK)
+        status = cannot_write(error, path);
+    if (status == DEM_OK && rename(beside, path) != 0)
+        status = cannot_write(error, path);
+    if (status != DEM_OK)
+        unlink(beside);
+    free(beside);
+    return status;
+}
+
+dem_status dem_file_write_buffer(const char *path, dem_buffer *buffer, dem_error *error)
+{
+    dem_status status = buffer->failed ? dem_fail_memory(error) : dem_file_write(path, buffer->data, buffer->size, error);
+    dem_buffer_release(buffer);
+    return status;
+}
+
+const char *dem_file_name(const char *path)
+{
+    const char *slash = strrchr(path, '/');
+    return slash ? slash + 1 : path;
+}
+
+bool dem_file_has_suffix(const char *path, const char *suffix)
+{
+    const char *dot = strrchr(dem_file_name(path), '.');
+    return dot && strcasecmp(dot + 1, suffix) == 0;
+}

@@ -1,0 +1,25 @@
+/// Files: read whole, written whole or not at all.
+#ifndef DEM_BASE_FILE_H
+#define DEM_BASE_FILE_H
+
+#include "base/status.h"
+#include "base/text.h"
+
+/// Reads a whole file; "-" is standard input. `bytes` is released with dem_buffer_release; its data always end
+/// in a 0 behind the last byte. Errors: DEM_BAD_INPUT for what is missing, a directory, unreadable or empty.
+dem_status dem_file_read(const char *path, dem_buffer *bytes, dem_error *error);
+
+/// Writes beside and renames, so `path` holds all of it or what it held before; "-" is standard output.
+/// A path that is no regular file (a pipe, /dev/stdout) is written directly. Error: DEM_CANNOT_WRITE.
+dem_status dem_file_write(const char *path, const void *bytes, size_t size, dem_error *error);
+
+/// Writes and releases a buffer; a buffer that has failed is DEM_NO_MEMORY.
+dem_status dem_file_write_buffer(const char *path, dem_buffer *buffer, dem_error *error);
+
+/// The part of a path behind the last '/'.
+const char *dem_file_name(const char *path);
+
+/// True where `path` ends in '.' and `suffix`, in any case.
+bool dem_file_has_suffix(const char *path, const char *suffix);
+
+#endif

@@ -1,0 +1,193 @@
+#include "base/json.h"
+
+#include <jansson.h>
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+dem_status dem_json_parse(const char *text, size_t size, const char *file, dem_json **root, dem_error *error)
+{
+    json_error_t where;
+    *root = json_loadb(text, size, JSON_REJECT_DUPLICATES | JSON_DECODE_ANY, &where);
+    if (*root)
+        return DEM_OK;
+    return dem_fail_at(error, DEM_BAD_INPUT, file, where.line > 0 ? where.line : 0, "not valid JSON: %s (column %d)",
+                       where.text, where.column);
+}
+
+void dem_json_release(dem_json *root)
+{
+    json_decref(root);
+}
+
+const dem_json *dem_json_member(const dem_json *object, const char *key)
+{
+    return json_object_get(object, key);
+}
+
+const dem_json *dem_json_item(const dem_json *array, size_t index)
+{
+    return json_array_get(array, index);
+}
+
+size_t dem_json_length(const dem_json *array)
+{
+    return json_array_size(array);
+}
+
+bool dem_json_is_object(const dem_json *value)
+{
+    return json_is_object(value);
+}
+
+bool dem_json_number(const dem_json *value, double *number)
+{
+    if (!json_is_number(value))
+        return false;
+    *number = json_number_value(value);
+    return true;
+}
+
+bool dem_json_whole(const dem_json *value, int64_t *number)
+{
+    if (!json_is_integer(value))
+        return false;
+    *number = json_integer_value(value);
+    return true;
+}
+
+bool dem_json_bool(const dem_json *value, bool *flag)
+{
+    if (!json_is_boolean(value))
+        return false;
+    *flag = json_is_true(value);
+    return true;
+}
+
+const char *dem_json_string(const dem_json *value)
+{
+    return json_string_value(value);
+}
+
+char *dem_json_text(const dem_json *value)
+{
+    return json_dumps(value, JSON_COMPACT | JSON_ENCODE_ANY | JSON_REAL_PRECISION(17));
+}
+
+dem_json_writer dem_json_begin(dem_buffer *out)
+{
+    return (dem_json_writer){.out = out, .line_depth = 1, .first = true};
+}
+
+// JSON strings are UTF-8; bytes that are not (file names) become '?'
+static void put_quoted(dem_buffer *out, const char *text)
+{
+    json_t *string = json_string(text ? text : "");
+    char *quoted = string ? json_dumps(string, JSON_ENCODE_ANY) : NULL;
+    if (quoted)
+        dem_buffer_text(out, quoted);
+    else {
+        dem_buffer_text(out, "\"");
+        for (const char *p = text; p && *p; p++) {
+            bool plain = (unsigned char)*p >= ' ' && (unsigned char)*p < 127 && *p != '"' && *p != '\\';
+            dem_buffer_bytes(out, plain ? p : "?", 1);
+        }
+        dem_buffer_text(out, "\"");
+    }
+    free(quoted);
+    json_decref(string);
+}
+
+static void put_lead(dem_json_writer *w, const char *key)
+{
+    if (w->depth > 0) {
+        if (!w->first)
+            dem_buffer_text(w->out, w->depth <= w->line_depth ? "," : ", ");
+        if (w->depth <= w->line_depth) {
+            dem_buffer_text(w->out, "\n");
+            for (int i = 0; i < w->depth; i++)
+                dem_buffer_text(w->out, "  ");
+        }
+    }
+    if (key) {
+        put_quoted(w->out, key);
+        dem_buffer_text(w->out, ": ");
+    }
+    w->first = false;
+}
+
+void dem_json_open_object(dem_json_writer *w, const char *key)
+{
+    put_lead(w, key);
+    dem_buffer_text(w->out, "{");
+    w->depth++;
+    w->first = true;
+}
+
+void dem_json_open_array(dem_json_writer *w, const char *key, bool lines)
+{
+    put_lead(w, key);
+    dem_buffer_text(w->out, "[");
+    w->depth++;
+    w->first = true;
+    if (lines)
+        w->line_depth = w->depth;
+}
+
+void dem_json_close(dem_json_writer *w, char bracket)
+{
+    bool lines = w->depth <= w->line_depth && !w->first;
+    w->depth--;
+    if (lines) {
+        dem_buffer_text(w->out, "\n");
+        for (int i = 0; i < w->depth; i++)
+            dem_buffer_text(w->out, "  ");
+    }
+    if (w->line_depth > w->depth)
+        w->line_depth = w->depth > 1 ? w->depth : 1;
+    dem_buffer_bytes(w->out, &bracket, 1);
+    if (w->depth == 0)
+        dem_buffer_text(w->out, "\n");
+    w->first = false;
+}
+
+void dem_json_put_number(dem_json_writer *w, const char *key, double value)
+{
+    put_lead(w, key);
+    if (isfinite(value))
+        dem_buffer_number(w->out, value, 17);
+    else
+        dem_buffer_text(w->out, "null");
+}
+
+void dem_json_put_whole(dem_json_writer *w, const char *key, int64_t value)
+{
+    put_lead(w, key);
+    dem_buffer_print(w->out, "%lld", (long long)value);
+}
+
+void dem_json_put_bool(dem_json_writer *w, const char *key, bool value)
+{
+    put_lead(w, key);
+    dem_buffer_text(w->out, value ? "true" : "false");
+}
+
+void dem_json_put_string(dem_json_writer *w, const char *key, const char *value)
+{
+    put_lead(w, key);
+    put_quoted(w->out, value);
+}
+
+void dem_json_put_raw(dem_json_writer *w, const char *key, const char *json)
+{
+    put_lead(w, key);
+    dem_buffer_text(w->out, json);
+}
+
+void dem_json_put_numbers(dem_json_writer *w, const char *key, const double *values, size_t count)
+{
+    dem_json_open_array(w, key, false);
+    for (size_t i = 0; i < count; i++)
+        dem_json_put_number(w, NULL, values[i]);
+    dem_json_close(w, ']');
+}

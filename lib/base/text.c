@@ -1,0 +1,180 @@
+#define _GNU_SOURCE
+#include "base/text.h"
+
+#include <ctype.h>
+#include <errno.h>
+#include <locale.h>
+#include <math.h>
+#include <stdarg.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum { EXACT_DIGITS = 15, EXACT_POWER = 22, NUMBER_TEXT = 64 };
+
+static const double powers_of_ten[EXACT_POWER + 1] = {1e0,  1e1,  1e2,  1e3,  1e4,  1e5,  1e6,  1e7,
+                                                      1e8,  1e9,  1e10, 1e11, 1e12, 1e13, 1e14, 1e15,
+                                                      1e16, 1e17, 1e18, 1e19, 1e20, 1e21, 1e22};
+
+// strtod in the C locale, for what the exact path below cannot do; `text` is 0-terminated by a copy
+static const char *parse_slowly(const char *text, const char *end, double *value)
+{
+    size_t length = 0;
+    while (text + length < end && (isalnum((unsigned char)text[length]) || strchr("+-.", text[length])))
+        length++;
+    char short_copy[NUMBER_TEXT];
+    char *copy = length < sizeof short_copy ? short_copy : malloc(length + 1);
+    if (!copy)
+        return NULL;
+    memcpy(copy, text, length);
+    copy[length] = 0;
+    locale_t plain = newlocale(LC_ALL_MASK, "C", (locale_t)0);
+    char *stop = copy;
+    if (plain) {
+        *value = strtod_l(copy, &stop, plain);
+        freelocale(plain);
+    }
+    size_t used = (size_t)(stop - copy);
+    if (copy != short_copy)
+        free(copy);
+    return used ? text + used : NULL;
+}
+
+// decimal digits up to 15 and a power of ten up to 22 are exact in a double, so one multiplication or
+// division rounds correctly (Clinger 1990); everything else goes to strtod
+const char *dem_parse_double(const char *text, const char *end, double *value)
+{
+    const char *p = text;
+    bool negative = false;
+    if (p < end && (*p == '-' || *p == '+'))
+        negative = *p++ == '-';
+    uint64_t mantissa = 0;
+    int digits = 0, point = 0;
+    bool any = false;
+    for (; p < end && *p >= '0' && *p <= '9'; p++, any = true)
+        if (digits <= EXACT_DIGITS && (mantissa || *p != '0'))
+            mantissa = mantissa * 10 + (uint64_t)(*p - '0'), digits++;
+        else if (digits > EXACT_DIGITS)
+            return parse_slowly(text, end, value);
+    if (p < end && *p == '.')
+        for (p++; p < end && *p >= '0' && *p <= '9'; p++, any = true) {
+            if (digits > EXACT_DIGITS)
+                return parse_slowly(text, end, value);
+            if (mantissa || *p != '0')
+                digits++;
+            mantissa = mantissa * 10 + (uint64_t)(*p - '0');
+            point--;
+        }
+    if (!any || digits > EXACT_DIGITS)
+        return parse_slowly(text, end, value);
+    if (p < end && (*p == 'e' || *p == 'E')) {
+        const char *q = p + 1;
+        bool down = false;
+        if (q < end && (*q == '-' || *q == '+'))
+            down = *q++ == '-';
+        if (q < end && *q >= '0' && *q <= '9') {
+            int exponent = 0;
+            for (; q < end && *q >= '0' && *q <= '9'; q++)
+                if (exponent < 10000)
+                    exponent = exponent * 10 + (*q - '0');
+            point += down ? -exponent : exponent;
+            p = q;
+        }
+    }
+    if (p < end && isalnum((unsigned char)*p))
+        return parse_slowly(text, end, value);  // hexadecimal and other rarities: strtod decides
+    double result = (double)mantissa;
+    if (mantissa && (point > EXACT_POWER || point < -EXACT_POWER))
+        return parse_slowly(text, end, value);
+    if (mantissa)
+        result = point < 0 ? result / powers_of_ten[-point] : result * powers_of_ten[point];
+    *value = negative ? -result : result;
+    return p;
+}
+
+const char *dem_parse_long(const char *text, const char *end, long *value)
+{
+    const char *p = text;
+    bool negative = false;
+    if (p < end && (*p == '-' || *p == '+'))
+        negative = *p++ == '-';
+    if (p >= end || *p < '0' || *p > '9')
+        return NULL;
+    long result = 0;
+    for (; p < end && *p >= '0' && *p <= '9'; p++)
+        if (__builtin_mul_overflow(result, 10L, &result) || __builtin_add_overflow(result, (long)(*p - '0'), &result))
+            return NULL;
+    *value = negative ? -result : result;
+    return p;
+}
+
+void dem_buffer_bytes(dem_buffer *buffer, const void *bytes, size_t size)
+{
+    if (buffer->failed)
+        return;
+    if (buffer->capacity - buffer->size < size + 1) {
+        size_t wanted = buffer->capacity + buffer->capacity / 2 + size + 256;
+        char *grown = wanted > buffer->size ? realloc(buffer->data, wanted) : NULL;
+        if (!grown) {
+            buffer->failed = true;
+            return;
+        }
+        buffer->data = grown;
+        buffer->capacity = wanted;
+    }
+    if (size)
+        memcpy(buffer->data + buffer->size, bytes, size);
+    buffer->size += size;
+    buffer->data[buffer->size] = 0;
+}
+
+void dem_buffer_text(dem_buffer *buffer, const char *text)
+{
+    dem_buffer_bytes(buffer, text, strlen(text));
+}
+
+void dem_buffer_print(dem_buffer *buffer, const char *format, ...)
+{
+    char text[1024];
+    va_list args;
+    va_start(args, format);
+    int length = vsnprintf(text, sizeof text, format, args);
+    va_end(args);
+    if (length < 0)
+        buffer->failed = true;
+    else if ((size_t)length < sizeof text)
+        dem_buffer_bytes(buffer, text, (size_t)length);
+    else {
+        char *copy = malloc((size_t)length + 1);
+        if (!copy) {
+            buffer->failed = true;
+            return;
+        }
+        va_start(args, format);
+        vsnprintf(copy, (size_t)length + 1, format, args);
+        va_end(args);
+        dem_buffer_bytes(buffer, copy, (size_t)length);
+        free(copy);
+    }
+}
+
+char *dem_format_double(char *text, size_t size, double value, int digits)
+{
+    snprintf(text, size, "%.*g", digits, value);
+    for (char *p = text; *p; p++)
+        if (*p == ',')
+            *p = '.';
+    return text;
+}
+
+void dem_buffer_number(dem_buffer *buffer, double value, int digits)
+{
+    char text[NUMBER_TEXT];
+    dem_buffer_text(buffer, dem_format_double(text, sizeof text, value, digits));
+}
+
+void dem_buffer_release(dem_buffer *buffer)
+{
+    free(buffer->data);
+    *buffer = (dem_buffer){0};
+}

@@ -1,0 +1,45 @@
+/// The exact geometry of a union of balls: moments, exposed surface, and their derivatives.
+#ifndef DEM_GEOM_UNION_H
+#define DEM_GEOM_UNION_H
+
+#include "base/memory.h"
+#include "math/mat3.h"
+
+/// Exposed patch of one ball: integrals over the directions n of its unit sphere that no other ball covers.
+/// The derivative of any volume integral int f dV with respect to this ball is r^2 int f(c + r n) (n, 1) dn.
+typedef struct dem_patch {
+    double area;         ///< int dn [sr]; 0: the ball adds nothing
+    dem_vec3 first;      ///< int n dn
+    dem_sym3 second;     ///< int n n^T dn
+    double third[10];    ///< int n_a n_b n_c dn: xxx xxy xxz xyy xyz xzz yyy yyz yzz zzz
+} dem_patch;
+
+/// An exposed arc of the circle in which ball `j` cuts ball `i`: points c_i + r_i (h u + s (a cos t + b sin t)),
+/// t from `begin` to `end`.
+typedef struct dem_arc {
+    uint32_t i, j;
+    dem_vec3 u, a, b;
+    double h, s, begin, end;
+} dem_arc;
+
+typedef struct dem_ball_union {
+    dem_moments moments;   ///< about the origin the balls are given in
+    double area;           ///< exposed
+    size_t pieces;         ///< connected pieces (balls that overlap)
+    size_t redundant;      ///< balls without exposed surface
+    dem_patch *patches;    ///< [count]
+    dem_arc *arcs;         ///< [arc_count], only if asked for
+    size_t arc_count;
+    bool consistent;       ///< false: a patch area was in doubt (sampled and integrated areas disagree)
+} dem_ball_union;
+
+/// `balls` should be near the origin (relative rounding); `want_arcs` also lists the crease arcs.
+dem_status dem_ball_union_compute(const dem_ball *balls, size_t count, bool want_arcs, dem_ball_union *result,
+                                  dem_error *error);
+void dem_ball_union_release(dem_ball_union *result);
+
+/// Connected pieces of balls whose overlap (r_i + r_j - distance) exceeds `margin`; `piece` (may be NULL) receives
+/// the smallest index of each ball's piece.
+size_t dem_ball_pieces(const dem_ball *balls, size_t count, double margin, uint32_t *piece);
+
+#endif

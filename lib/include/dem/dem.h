@@ -1,0 +1,8 @@
+/// Everything.
+#ifndef DEM_DEM_H
+#define DEM_DEM_H
+#include "dem/base.h"
+#include "dem/clump.h"
+#include "dem/mesh.h"
+#include "dem/picture.h"
+#endif
