@@ -89,6 +89,8 @@ DEM_API dem_status dem_mesh_split(const dem_mesh *mesh, dem_mesh **bodies, size_
 /// Exact mass properties at unit density by the divergence theorem about a local origin
 /// (Tonon 2004; Mirtich 1996), compensated sums. The mesh must be closed.
 DEM_API dem_solid dem_mesh_solid(const dem_mesh *mesh);
+/// Volume, first and second moments about `origin`, axes of the mesh's frame; same method and condition.
+DEM_API dem_moments dem_mesh_moments(const dem_mesh *mesh, dem_vec3 origin);
 
 /// Size and form of a grain. Lengths in metres, the rest pure numbers.
 typedef struct dem_shape {
