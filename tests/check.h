@@ -26,7 +26,7 @@ static inline void check_near_(double got, double want, double tolerance, const 
 #define check_near(got, want, tolerance) check_near_((got), (want), (tolerance), #got, __FILE__, __LINE__)
 /// |got - want| <= tolerance |want|
 #define check_close(got, want, tolerance) \
-    check_near_((got), (want), (tolerance)*fabs(want), #got, __FILE__, __LINE__)
+    check_near_((got), (want), (tolerance)*fabs((double)(want)), #got, __FILE__, __LINE__)
 
 static inline void check_vec_(dem_vec3 got, dem_vec3 want, double tolerance, const char *what, const char *file,
                               int line)

@@ -112,6 +112,22 @@ DEM_API void dem_pack_free(dem_pack *pack);
 DEM_API dem_status dem_fidelity_measure(const dem_ctx *ctx, const dem_mesh *mesh, const dem_ball *balls,
                                         size_t count, size_t samples, dem_fidelity *fidelity, dem_error *error);
 
+/// A clump to make from a mesh; see dem_make_defaults.
+typedef struct dem_make_options {
+    dem_pack_options pack;
+    double density;              ///< [kg/m^3]
+    dem_mass_source mass_from;   ///< whose mass, centre and inertia the clump gets
+    const char *name;
+    const char *source_mesh, *source_sha256, *source_unit;
+    size_t surface_triangles;    ///< of the reduced surface kept in the clump for pictures; 0: none
+} dem_make_options;
+DEM_API dem_make_options dem_make_defaults(void);
+
+/// Packs a repaired mesh and measures the result: spheres, mass properties, fidelity, shape, surface.
+/// `pack` (may be NULL) also receives the packing as it came, in the frame of the mesh; free it.
+DEM_API dem_status dem_clump_make(const dem_ctx *ctx, const dem_mesh *mesh, const dem_make_options *options,
+                                  dem_clump **clump, dem_pack *pack, dem_error *error);
+
 /// Size and form of a repaired mesh.
 DEM_API dem_status dem_shape_measure(const dem_ctx *ctx, const dem_mesh *mesh, dem_shape *shape, dem_error *error);
 
