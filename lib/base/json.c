@@ -40,6 +40,16 @@ bool dem_json_is_object(const dem_json *value)
     return json_is_object(value);
 }
 
+bool dem_json_is_array(const dem_json *value)
+{
+    return json_is_array(value);
+}
+
+bool dem_json_is_null(const dem_json *value)
+{
+    return json_is_null(value);
+}
+
 bool dem_json_number(const dem_json *value, double *number)
 {
     if (!json_is_number(value))
@@ -154,7 +164,9 @@ void dem_json_close(dem_json_writer *w, char bracket)
 void dem_json_put_number(dem_json_writer *w, const char *key, double value)
 {
     put_lead(w, key);
-    if (isfinite(value))
+    if (value == 0 && signbit(value))
+        dem_buffer_text(w->out, "-0.0");  // "-0" is a whole number, which has no sign
+    else if (isfinite(value))
         dem_buffer_number(w->out, value, 17);
     else
         dem_buffer_text(w->out, "null");

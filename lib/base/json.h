@@ -15,6 +15,8 @@ const dem_json *dem_json_member(const dem_json *object, const char *key);
 const dem_json *dem_json_item(const dem_json *array, size_t index);
 size_t dem_json_length(const dem_json *array);
 bool dem_json_is_object(const dem_json *value);
+bool dem_json_is_array(const dem_json *value);
+bool dem_json_is_null(const dem_json *value);
 bool dem_json_number(const dem_json *value, double *number);
 bool dem_json_whole(const dem_json *value, int64_t *number);
 bool dem_json_bool(const dem_json *value, bool *flag);

@@ -27,7 +27,8 @@ typedef struct dem_fidelity {
 typedef enum dem_mass_source { DEM_MASS_FROM_MESH, DEM_MASS_FROM_UNION } dem_mass_source;
 
 /// What a clump is made from; every pointer is copied. Lengths in metres; `balls` and `surface` in the
-/// clump's own frame: centre of mass at 0, principal axes I1 <= I2 <= I3.
+/// clump's own frame: centre of mass at 0, principal axes I1 <= I2 <= I3. A text that is NULL comes back as "",
+/// a figure of `union_*`, `fidelity`, `shape` or `seconds` that is not known is NAN.
 typedef struct dem_clump_def {
     const char *name;
     const char *source_mesh, *source_sha256, *source_unit;
@@ -59,6 +60,8 @@ typedef struct dem_clump dem_clump;
 DEM_API dem_status dem_clump_create(const dem_clump_def *def, dem_clump **clump, dem_error *error);
 DEM_API void dem_clump_destroy(dem_clump *clump);
 DEM_API size_t dem_clump_bytes(const dem_clump *clump);
+/// Of everything but `seconds`: equal for two makings that came to the same clump.
+DEM_API uint64_t dem_clump_hash(const dem_clump *clump);
 /// A view of everything in the clump; its pointers live as long as the clump.
 DEM_API dem_clump_def dem_clump_view(const dem_clump *clump);
 
