@@ -1,5 +1,7 @@
 #include "check.h"
 
+#include <signal.h>
+#include <sys/resource.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
@@ -61,6 +63,23 @@ static void a_failed_write_leaves_the_old_file_and_nothing_beside_it(void **stat
 {
     (void)state;
     dem_error error;
+    dem_buffer kept;
+    char big[4096] = {0};
+    struct rlimit old, small = {1000, 1000};
+    check_ok(dem_file_write(in_folder("kept"), "old", 3, &error), error);
+    check(getrlimit(RLIMIT_FSIZE, &old) == 0);
+    small.rlim_max = old.rlim_max;
+    signal(SIGXFSZ, SIG_IGN);
+    setrlimit(RLIMIT_FSIZE, &small);  // as a full disk would
+    dem_status status = dem_file_write(in_folder("kept"), big, sizeof big, &error);
+    setrlimit(RLIMIT_FSIZE, &old);
+    check(status == DEM_CANNOT_WRITE);
+    check_ok(dem_file_read(in_folder("kept"), &kept, &error), error);
+    assert_string_equal(kept.data, "old");
+    dem_buffer_release(&kept);
+    char command[300];
+    snprintf(command, sizeof command, "ls '%s' | grep -q 'kept.'", folder);
+    check(system(command) != 0);
     check(dem_file_write("/dev/full", "x", 1, &error) == DEM_CANNOT_WRITE);
     check(dem_file_write(in_folder("no/such/folder"), "x", 1, &error) == DEM_CANNOT_WRITE);
     check(strstr(error.text, "cannot write") != NULL);

@@ -7,60 +7,18 @@
 #include "base/file.h"
 #include "base/json.h"
 #include "base/memory.h"
+#include "clump/figures.h"
 #include "math/vec.h"
 
 #define SCHEMA "dem-clump/"
 #define VERSION "1"
 
-// a value of dem_clump_def and its name in the file
-typedef struct entry {
-    const char *key;
-    size_t at;
-} entry;
-
-static const entry fidelity_entries[] = {
-    {"iou_gap", offsetof(dem_clump_def, fidelity.iou_gap)},
-    {"volume_error", offsetof(dem_clump_def, fidelity.volume_error)},
-    {"distance_mean", offsetof(dem_clump_def, fidelity.distance_mean)},
-    {"distance_max", offsetof(dem_clump_def, fidelity.distance_max)},
-    {"protrusion", offsetof(dem_clump_def, fidelity.protrusion)},
-    {"centre_offset", offsetof(dem_clump_def, fidelity.centre_offset)},
-    {"inertia_error", offsetof(dem_clump_def, fidelity.inertia_error)},
-    {"normal_deviation_deg", offsetof(dem_clump_def, fidelity.normal_deviation_deg)},
-    {"overlap_ratio", offsetof(dem_clump_def, fidelity.overlap_ratio)},
-};
-
-static const entry shape_entries[] = {
-    {"equivalent_diameter", offsetof(dem_clump_def, shape.equivalent_diameter)},
-    {"longest", offsetof(dem_clump_def, shape.longest)},
-    {"intermediate", offsetof(dem_clump_def, shape.intermediate)},
-    {"shortest", offsetof(dem_clump_def, shape.shortest)},
-    {"elongation", offsetof(dem_clump_def, shape.elongation)},
-    {"flatness", offsetof(dem_clump_def, shape.flatness)},
-    {"sphericity", offsetof(dem_clump_def, shape.sphericity)},
-    {"convexity", offsetof(dem_clump_def, shape.convexity)},
-    {"roundness", offsetof(dem_clump_def, shape.roundness)},
-    {"angularity", offsetof(dem_clump_def, shape.angularity)},
-};
-
-enum {
-    FIDELITY_ENTRIES = sizeof fidelity_entries / sizeof *fidelity_entries,
-    SHAPE_ENTRIES = sizeof shape_entries / sizeof *shape_entries,
-};
-_Static_assert((FIDELITY_ENTRIES + 1) * sizeof(double) == sizeof(dem_fidelity) &&
-               SHAPE_ENTRIES * sizeof(double) == sizeof(dem_shape), "every figure has an entry (pieces apart)");
-
-static double *figure(dem_clump_def *def, const entry *e)
-{
-    return (double *)((char *)def + e->at);
-}
-
 // ---- writing
 
-static void put_figures(dem_json_writer *w, dem_clump_def *def, const entry *entries, int count)
+static void put_figures(dem_json_writer *w, const void *values, const dem_figure *figures, int count)
 {
     for (int i = 0; i < count; i++)
-        dem_json_put_number(w, entries[i].key, *figure(def, &entries[i]));
+        dem_json_put_number(w, figures[i].name, *(const double *)((const char *)values + figures[i].at));
 }
 
 static void put_vec(dem_json_writer *w, const char *key, dem_vec3 v)
@@ -68,9 +26,8 @@ static void put_vec(dem_json_writer *w, const char *key, dem_vec3 v)
     dem_json_put_numbers(w, key, (double[]){v.x, v.y, v.z}, 3);
 }
 
-static void put_head(dem_json_writer *w, const dem_clump_def *def)
+static void put_mass(dem_json_writer *w, const dem_clump_def *def)
 {
-    dem_json_put_string(w, "schema", SCHEMA VERSION);
     dem_json_put_string(w, "name", def->name);
     dem_json_open_object(w, "source");
     dem_json_put_string(w, "mesh", def->source_mesh);
@@ -112,32 +69,38 @@ static void put_surface(dem_json_writer *w, const dem_mesh *surface)
     dem_json_close(w, '}');
 }
 
+void dem_clump_put_figures(dem_json_writer *w, const dem_clump_def *def)
+{
+    put_mass(w, def);
+    dem_json_open_object(w, "fidelity");
+    put_figures(w, &def->fidelity, dem_fidelity_figures, DEM_FIDELITY_FIGURES);
+    dem_json_put_whole(w, "pieces", (int64_t)def->fidelity.pieces);
+    dem_json_close(w, '}');
+    dem_json_open_object(w, "shape");
+    put_figures(w, &def->shape, dem_shape_figures, DEM_SHAPE_FIGURES);
+    dem_json_close(w, '}');
+    dem_json_open_object(w, "made");
+    dem_json_put_string(w, "method", def->method);
+    dem_json_put_raw(w, "parameters", def->parameters);
+    dem_json_put_whole(w, "seed", (int64_t)def->seed);  // JSON whole numbers are signed: seeds from 2^63 wrap
+    dem_json_put_number(w, "seconds", def->seconds);
+    dem_json_put_string(w, "version", def->version);
+    dem_json_close(w, '}');
+}
+
 dem_status dem_clump_encode(const dem_clump *clump, dem_buffer *out, dem_error *error)
 {
     dem_clump_def def = dem_clump_view(clump);
     dem_json_writer writer = dem_json_begin(out), *w = &writer;
     dem_json_open_object(w, NULL);
-    put_head(w, &def);
+    dem_json_put_string(w, "schema", SCHEMA VERSION);
+    dem_clump_put_figures(w, &def);
     dem_json_open_array(w, "spheres", true);
     for (size_t i = 0; i < def.ball_count; i++) {
         dem_vec3 c = def.balls[i].centre;
         dem_json_put_numbers(w, NULL, (double[]){c.x, c.y, c.z, def.balls[i].radius}, 4);
     }
     dem_json_close(w, ']');
-    dem_json_open_object(w, "fidelity");
-    put_figures(w, &def, fidelity_entries, FIDELITY_ENTRIES);
-    dem_json_put_whole(w, "pieces", (int64_t)def.fidelity.pieces);
-    dem_json_close(w, '}');
-    dem_json_open_object(w, "shape");
-    put_figures(w, &def, shape_entries, SHAPE_ENTRIES);
-    dem_json_close(w, '}');
-    dem_json_open_object(w, "made");
-    dem_json_put_string(w, "method", def.method);
-    dem_json_put_raw(w, "parameters", def.parameters);
-    dem_json_put_whole(w, "seed", (int64_t)def.seed);  // JSON whole numbers are signed: seeds from 2^63 wrap
-    dem_json_put_number(w, "seconds", def.seconds);
-    dem_json_put_string(w, "version", def.version);
-    dem_json_close(w, '}');
     if (def.surface.triangle_count)
         put_surface(w, &def.surface);
     dem_json_close(w, '}');
@@ -202,11 +165,11 @@ static dem_status read_numbers(const reader *r, const char *key, need n, const c
     return fits ? DEM_OK : refuse(r, key, what);
 }
 
-static dem_status read_figures(const reader *r, const entry *entries, int count, dem_clump_def *def)
+static dem_status read_figures(const reader *r, const dem_figure *figures, int count, void *values)
 {
     for (int i = 0; i < count; i++)
-        DEM_TRY(read_numbers(r, entries[i].key, OPTIONAL, "needs a number, or null where it is not known", 1,
-                             figure(def, &entries[i])));
+        DEM_TRY(read_numbers(r, figures[i].name, OPTIONAL, "needs a number, or null where it is not known", 1,
+                             figure_of(values, &figures[i])));
     return DEM_OK;
 }
 
@@ -277,14 +240,14 @@ static dem_status read_sections(const reader *r, dem_clump_def *def)
     DEM_TRY(read_vec(&s, "centre", &def->union_centre));
     DEM_TRY(read_numbers(&s, "inertia", OPTIONAL, "needs 3 finite numbers [kg m^2]", 3, def->union_inertia));
     DEM_TRY(open_section(r, "fidelity", &s));
-    DEM_TRY(read_figures(&s, fidelity_entries, FIDELITY_ENTRIES, def));
+    DEM_TRY(read_figures(&s, dem_fidelity_figures, DEM_FIDELITY_FIGURES, &def->fidelity));
     int64_t whole = 0;
     DEM_TRY(read_whole(&s, "pieces", &whole));
     if (whole < 0)
         return refuse(&s, "pieces", "must not be negative");
     def->fidelity.pieces = (size_t)whole;
     DEM_TRY(open_section(r, "shape", &s));
-    DEM_TRY(read_figures(&s, shape_entries, SHAPE_ENTRIES, def));
+    DEM_TRY(read_figures(&s, dem_shape_figures, DEM_SHAPE_FIGURES, &def->shape));
     DEM_TRY(open_section(r, "made", &s));
     DEM_TRY(read_text(&s, "method", &def->method));
     DEM_TRY(read_text(&s, "version", &def->version));
@@ -380,10 +343,10 @@ static dem_clump_def nothing(void)
 {
     dem_clump_def def = {.orientation = {1, 0, 0, 0}, .union_volume = NAN, .union_centre = {NAN, NAN, NAN},
                          .union_inertia = {NAN, NAN, NAN}, .seconds = NAN};
-    for (int i = 0; i < FIDELITY_ENTRIES; i++)
-        *figure(&def, &fidelity_entries[i]) = NAN;
-    for (int i = 0; i < SHAPE_ENTRIES; i++)
-        *figure(&def, &shape_entries[i]) = NAN;
+    for (int i = 0; i < DEM_FIDELITY_FIGURES; i++)
+        *figure_of(&def.fidelity, &dem_fidelity_figures[i]) = NAN;
+    for (int i = 0; i < DEM_SHAPE_FIGURES; i++)
+        *figure_of(&def.shape, &dem_shape_figures[i]) = NAN;
     return def;
 }
 
