@@ -28,18 +28,19 @@ typedef struct dem_ball_union {
     size_t pieces;         ///< connected pieces (balls that overlap)
     size_t redundant;      ///< balls without exposed surface
     dem_patch *patches;    ///< [count]
-    dem_arc *arcs;         ///< [arc_count], only if asked for
+    dem_arc *arcs;         ///< [arc_count], only if asked for; each crease once, i < j
     size_t arc_count;
     bool consistent;       ///< false: a patch area was in doubt (sampled and integrated areas disagree)
 } dem_ball_union;
 
-/// `balls` should be near the origin (relative rounding); `want_arcs` also lists the crease arcs.
+/// Exact to rounding, coincidences included; work and memory grow with the overlapping pairs. Far from the origin the
+/// moments about it lose what their size loses, patches and area do not. `want_arcs` also lists the crease arcs.
 dem_status dem_ball_union_compute(const dem_ball *balls, size_t count, bool want_arcs, dem_ball_union *result,
                                   dem_error *error);
 void dem_ball_union_release(dem_ball_union *result);
 
 /// Connected pieces of balls whose overlap (r_i + r_j - distance) exceeds `margin`; `piece` (may be NULL) receives
-/// the smallest index of each ball's piece.
+/// the smallest index of each ball's piece. 0: no balls or no memory.
 size_t dem_ball_pieces(const dem_ball *balls, size_t count, double margin, uint32_t *piece);
 
 #endif

@@ -1,0 +1,34 @@
+/// A bounding-box tree over balls: neighbours of a ball, balls along a line or near a point.
+#ifndef DEM_GEOM_BALL_TREE_H
+#define DEM_GEOM_BALL_TREE_H
+
+#include "base/memory.h"
+#include "math/vec.h"
+
+typedef struct dem_ball_node {
+    dem_box box;          ///< of the whole balls
+    uint32_t begin, end;  ///< range of `order`; the left child follows its parent
+    uint32_t right;       ///< 0: leaf
+} dem_ball_node;
+
+/// Borrowed balls must outlive the tree.
+typedef struct dem_ball_tree {
+    const dem_ball *balls;
+    size_t count;
+    dem_ball_node *nodes;
+    size_t node_count;
+    uint32_t *order;  ///< ball indices, leaf by leaf
+} dem_ball_tree;
+
+dem_status dem_ball_tree_build(dem_ball_tree *tree, const dem_ball *balls, size_t count, dem_error *error);
+void dem_ball_tree_release(dem_ball_tree *tree);
+
+/// Writes to `found` (room for `count`) the balls whose gap to the ball (centre, radius) is below `gap`
+/// (negative: they overlap by more than -gap), in the order of the tree, which is the same for the same balls.
+size_t dem_ball_tree_near(const dem_ball_tree *tree, dem_ball ball, double gap, uint32_t *found);
+
+/// The smallest |p - c| - r of all balls, or `limit` where none is below it: outside the union the distance to it,
+/// inside it negative. `nearest` (may be NULL) is set where one is below.
+double dem_ball_tree_level(const dem_ball_tree *tree, dem_vec3 p, double limit, uint32_t *nearest);
+
+#endif
