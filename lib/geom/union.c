@@ -224,7 +224,7 @@ static bool hidden_collect(work *w)
 {
     size_t circles = w->cap_count;
     if (!reserve(&w->start, &w->start_room, circles + 2, sizeof *w->start) ||
-        !reserve(&w->hidden, &w->hidden_room, 2 * w->crossing_count, sizeof *w->hidden))
+        !reserve(&w->hidden, &w->hidden_room, 2 * w->crossing_count + 1, sizeof *w->hidden))
         return false;
     memset(w->start, 0, (circles + 2) * sizeof *w->start);
     for (size_t i = 0; i < w->crossing_count; i++) {
