@@ -1,0 +1,22 @@
+/// What we take from CGAL, behind a plain C interface: nothing is thrown across it. Built without CGAL each
+/// call returns DEM_UNAVAILABLE, unless its comment says otherwise. Outputs are new meshes, empty on failure.
+#ifndef DEM_MESH_CGAL_H
+#define DEM_MESH_CGAL_H
+
+#include "dem/mesh.h"
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+/// Convex hull of the vertices that triangles use. DEM_BAD_INPUT where they lie in one plane.
+dem_status dem_mesh_hull(const dem_mesh *mesh, dem_mesh *hull, dem_error *error);
+
+/// Edge collapse that keeps the volume (Lindstrom & Turk 1998) down to about `triangles`; a finer mesh is copied.
+/// The coordinates should be about 1 in size; see dem_mesh_decimate.
+dem_status dem_mesh_collapse(const dem_mesh *mesh, size_t triangles, dem_mesh *out, dem_error *error);
+
+#ifdef __cplusplus
+}
+#endif
+#endif

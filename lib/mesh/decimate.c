@@ -1,0 +1,129 @@
+// Decimation. Edge collapse costs some 10 us per triangle, so huge meshes are first thinned by merging the
+// vertices of each cell of a grid into their mean (Rossignac & Borrel 1993).
+#include "mesh/decimate.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/memory.h"
+#include "mesh/cgal.h"
+#include "mesh/mass.h"
+
+enum { THIN_ABOVE = 200000, THIN_FACTOR = 8, CELLS = 1 << 20 };
+
+typedef struct cell_map {
+    uint64_t *keys;    // 0: free
+    uint32_t *numbers;
+    size_t mask, count;
+} cell_map;
+
+static uint32_t cell_number(cell_map *map, uint64_t key)
+{
+    size_t at = (size_t)((key * 0x9e3779b97f4a7c15u) >> 20) & map->mask;
+    while (map->keys[at] && map->keys[at] != key)
+        at = (at + 1) & map->mask;
+    if (!map->keys[at]) {
+        map->keys[at] = key;
+        map->numbers[at] = (uint32_t)map->count++;
+    }
+    return map->numbers[at];
+}
+
+// edge of the grid's cells: a surface of area A leaves about 2 A / h^2 triangles
+static double cell_size(const dem_mesh *mesh, size_t triangles)
+{
+    double area = 0;
+    for (size_t i = 0; i < mesh->triangle_count; i++) {
+        const uint32_t *t = mesh->triangles + 3 * i;
+        dem_vec3 a = mesh->vertices[t[0]];
+        area += v3_norm(v3_cross(v3_sub(mesh->vertices[t[1]], a), v3_sub(mesh->vertices[t[2]], a))) / 2;
+    }
+    return fmax(sqrt(2 * area / (double)triangles), box_diagonal(dem_mesh_box(mesh)) / (CELLS - 2));
+}
+
+static void merge_cells(dem_mesh *mesh, cell_map *map, uint32_t *number, dem_vec3 *sums, double *weights, double size)
+{
+    dem_vec3 low = dem_mesh_box(mesh).low;
+    for (size_t i = 0; i < 3 * mesh->triangle_count; i++) {
+        uint32_t v = mesh->triangles[i];
+        if (number[v] == UINT32_MAX) {
+            dem_vec3 p = v3_scale(v3_sub(mesh->vertices[v], low), 1 / size);
+            uint64_t key = 1 + (uint64_t)p.x + ((uint64_t)p.y << 21) + ((uint64_t)p.z << 42);
+            uint32_t cell = number[v] = cell_number(map, key);
+            sums[cell] = v3_add(sums[cell], mesh->vertices[v]);
+            weights[cell]++;
+        }
+        mesh->triangles[i] = number[v];
+    }
+    for (size_t i = 0; i < map->count; i++)
+        mesh->vertices[i] = v3_scale(sums[i], 1 / weights[i]);
+    mesh->vertex_count = map->count;
+    size_t kept = 0;
+    for (size_t i = 0; i < mesh->triangle_count; i++) {
+        uint32_t *t = mesh->triangles + 3 * i;
+        if (t[0] != t[1] && t[1] != t[2] && t[2] != t[0])
+            memmove(mesh->triangles + 3 * kept++, t, 3 * sizeof *t);
+    }
+    mesh->triangle_count = kept;
+}
+
+// in place, to about `triangles`
+static dem_status thin(dem_mesh *mesh, size_t triangles, dem_error *error)
+{
+    dem_status status = DEM_OK;
+    cell_map map = {.mask = 1023};
+    while (map.mask < 2 * mesh->vertex_count)
+        map.mask = 2 * map.mask + 1;
+    map.keys = dem_alloc_zero(map.mask + 1, sizeof *map.keys);
+    map.numbers = dem_alloc(map.mask + 1, sizeof *map.numbers);
+    uint32_t *number = dem_alloc(mesh->vertex_count, sizeof *number);
+    dem_vec3 *sums = dem_alloc_zero(mesh->vertex_count, sizeof *sums);
+    double *weights = dem_alloc_zero(mesh->vertex_count, sizeof *weights);
+    if (map.keys && map.numbers && number && sums && weights) {
+        memset(number, 0xff, mesh->vertex_count * sizeof *number);
+        merge_cells(mesh, &map, number, sums, weights, cell_size(mesh, triangles));
+    } else {
+        status = dem_fail_memory(error);
+    }
+    free(map.keys);
+    free(map.numbers);
+    free(number);
+    free(sums);
+    free(weights);
+    return status;
+}
+
+static void move(dem_mesh *mesh, dem_vec3 shift, double factor)
+{
+    for (size_t i = 0; i < mesh->vertex_count; i++)
+        mesh->vertices[i] = v3_scale(v3_add(mesh->vertices[i], shift), factor);
+}
+
+dem_status dem_mesh_decimate(const dem_mesh *mesh, size_t triangles, dem_mesh *out, dem_error *error)
+{
+    *out = (dem_mesh){0};
+    dem_mesh work;
+    DEM_TRY(dem_mesh_copy(mesh, &work, error));
+    if (mesh->triangle_count <= triangles) {
+        *out = work;
+        return DEM_OK;
+    }
+    // about its middle and of size 1, so that every grain is collapsed in the same way
+    dem_box box = dem_mesh_box(&work);
+    dem_vec3 middle = v3_along(box.low, 0.5, v3_sub(box.high, box.low));
+    double size = box_diagonal(box);
+    move(&work, v3_scale(middle, -1), 1 / size);
+    dem_status status = DEM_OK;
+    size_t thinned = DEM_CGAL ? THIN_FACTOR * triangles : triangles;
+    if (!DEM_CGAL || work.triangle_count > THIN_ABOVE + thinned)
+        status = thin(&work, thinned, error);
+    if (status == DEM_OK && DEM_CGAL) {
+        status = dem_mesh_collapse(&work, triangles, out, error);
+    } else if (status == DEM_OK) {
+        *out = work;
+        work = (dem_mesh){0};
+    }
+    move(out, v3_scale(middle, 1 / size), size);
+    dem_mesh_free(&work);
+    return status;
+}

@@ -1,0 +1,11 @@
+/// The smallest box around a mesh.
+#ifndef DEM_MESH_MIN_BOX_H
+#define DEM_MESH_MIN_BOX_H
+
+#include "dem/mesh.h"
+
+/// Edges of the bounding box of least volume, in any orientation, descending [m]. Deterministic; the same
+/// with and without CGAL.
+dem_status dem_mesh_min_box(const dem_mesh *mesh, double edges[3], dem_error *error);
+
+#endif
