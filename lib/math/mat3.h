@@ -17,6 +17,12 @@ static inline dem_sym3 sym3_outer(dem_vec3 u)
 {
     return (dem_sym3){u.x * u.x, u.y * u.y, u.z * u.z, u.x * u.y, u.x * u.z, u.y * u.z};
 }
+/// (p q^T + q p^T) / 2
+static inline dem_sym3 sym3_pair(dem_vec3 p, dem_vec3 q)
+{
+    return (dem_sym3){p.x * q.x, p.y * q.y, p.z * q.z, (p.x * q.y + p.y * q.x) / 2, (p.x * q.z + p.z * q.x) / 2,
+                      (p.y * q.z + p.z * q.y) / 2};
+}
 static inline dem_vec3 sym3_apply(dem_sym3 a, dem_vec3 v)
 {
     return v3(a.xx * v.x + a.xy * v.y + a.xz * v.z, a.xy * v.x + a.yy * v.y + a.yz * v.z,
