@@ -1,5 +1,6 @@
 #include "mesh/read.h"
 
+#include <math.h>
 #include <string.h>
 
 #include "base/file.h"
@@ -153,17 +154,21 @@ dem_status dem_mesh_refuse(const char *name, const char *bytes, size_t size, con
 
 void dem_mesh_warn_precision(const dem_ctx *ctx, const dem_mesh *mesh)
 {
+    if (!mesh->single_precision)
+        return;
     dem_box box = box_empty();
     for (size_t i = 0; i < mesh->vertex_count; i++)
         box = box_with(box, mesh->vertices[i]);
-    double size = box_diagonal(box), away = v3_norm(v3_scale(v3_add(box.low, box.high), 0.5));
-    if (!mesh->single_precision || !(size < 1e-4 * away))
+    double size = box_diagonal(box), far = 0;
+    for (int axis = 0; axis < 3; axis++)
+        far = fmax(far, fmax(fabs(v3_get(box.low, axis)), fabs(v3_get(box.high, axis))));
+    if (!(size < 1e-4 * far))
         return;
-    char size_text[32], away_text[32], step_text[32];
-    dem_log(ctx, DEM_LOG_WARNING, "32-bit coordinates of a grain %s across, %s from the origin: they resolve %s only; "
-            "move the grain to the origin before export", dem_format_double(size_text, sizeof size_text, size, 3),
-            dem_format_double(away_text, sizeof away_text, away, 3),
-            dem_format_double(step_text, sizeof step_text, away * 0x1p-24, 2));
+    char size_text[32], far_text[32], step_text[32];
+    dem_log(ctx, DEM_LOG_WARNING, "precision is lost: the grain is %s across at coordinates of %s, where the 32-bit numbers "
+            "of the file lie %s apart; move it to the origin before export",
+            dem_format_double(size_text, sizeof size_text, size, 3), dem_format_double(far_text, sizeof far_text, far, 3),
+            dem_format_double(step_text, sizeof step_text, ldexp(1, ilogb(far) - 23), 2));
 }
 
 static void warn_name(const dem_ctx *ctx, const char *name, dem_mesh_format format)

@@ -31,12 +31,13 @@ static bool is_one_of(dem_word word, const char *const *list, size_t count)
 // goes on to the next line where this one ends in a backslash; true where something is left on it
 static bool anything_left(dem_reader *r)
 {
-    for (;;) {
+    reader_skip_blanks(r);
+    while (r->at < r->stop && *r->at == '\\' && r->at + 1 == r->stop) {
+        if (!dem_reader_line(r))
+            return false;
         reader_skip_blanks(r);
-        if (r->at < r->stop && *r->at == '\\' && r->at + 1 == r->stop && dem_reader_line(r))
-            continue;
-        return r->at < r->stop && *r->at != '#';
     }
+    return r->at < r->stop && *r->at != '#';
 }
 
 static void skip_continued(dem_reader *r)
@@ -52,7 +53,7 @@ static dem_status read_vertex(dem_reader *r)
     double xyz[3];
     for (int k = 0; k < 3; k++) {
         anything_left(r);
-        DEM_TRY(dem_reader_number(r, "vertex", &xyz[k]));
+        DEM_TRY(dem_reader_number(r, &xyz[k]));
     }
     skip_continued(r);
     return dem_reader_vertex(r, (dem_vec3){xyz[0], xyz[1], xyz[2]});

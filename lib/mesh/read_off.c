@@ -27,7 +27,7 @@ static bool next_line(dem_reader *r)
 static dem_status read_header(dem_reader *r)
 {
     if (!next_line(r))
-        return dem_reader_fail(r, "unexpected end of file in the OFF header; export the mesh again");
+        return dem_reader_unexpected(r, (dem_word){0}, "'OFF'");
     const char *begin = r->at;
     dem_word word = dem_reader_word(r);
     if (word.length < 3 || memcmp(word.text + word.length - 3, "OFF", 3) != 0) {
@@ -43,15 +43,15 @@ static dem_status read_header(dem_reader *r)
         return dem_reader_fail(r, "binary OFF cannot be read; export OFF as text, or binary PLY or STL");
     r->at = begin;
     if (word.length == 0 && !next_line(r))
-        return dem_reader_fail(r, "unexpected end of file, the counts are missing; export the mesh again");
+        return dem_reader_unexpected(r, (dem_word){0}, "the counts");
     return DEM_OK;
 }
 
 static dem_status read_counts(dem_reader *r, size_t *vertices, size_t *faces)
 {
     int64_t v, f;
-    DEM_TRY(dem_reader_whole(r, "counts", &v));
-    DEM_TRY(dem_reader_whole(r, "counts", &f));
+    DEM_TRY(dem_reader_whole(r, &v));
+    DEM_TRY(dem_reader_whole(r, &f));
     if (v < 0 || f < 0)
         return dem_reader_fail(r, "negative counts in the OFF header; export the mesh again");
     size_t room = (size_t)(r->end - r->at) + 1;
@@ -70,12 +70,12 @@ static dem_status read_counts(dem_reader *r, size_t *vertices, size_t *faces)
 static dem_status read_face(dem_reader *r)
 {
     int64_t count, index;
-    DEM_TRY(dem_reader_whole(r, "face", &count));
+    DEM_TRY(dem_reader_whole(r, &count));
     if (count < 0)
         return dem_reader_fail(r, "face %zu has %" PRId64 " corners; the file is damaged, export it again",
                                r->face_count + 1, count);
     for (int64_t k = 0; k < count; k++) {
-        DEM_TRY(dem_reader_whole(r, "face", &index));
+        DEM_TRY(dem_reader_whole(r, &index));
         DEM_TRY(dem_reader_corner(r, index, 0));
     }
     return dem_reader_face(r);
@@ -91,7 +91,7 @@ static dem_status read_all(dem_reader *r)
             return dem_reader_fail(r, "unexpected end of file: header says %zu vertices, %zu are there; export it again",
                                    vertices, i);
         dem_vec3 p;
-        DEM_TRY(dem_reader_point(r, "vertex", &p));
+        DEM_TRY(dem_reader_point(r, &p));
         DEM_TRY(dem_reader_vertex(r, p));
     }
     for (size_t i = 0; i < faces; i++) {

@@ -50,8 +50,7 @@ static dem_status read_format(ply_file *ply)
                 : dem_word_is(word, "binary_big_endian")    ? PLY_BIG
                                                             : PLY_NONE;
     if (ply->form == PLY_NONE)
-        return dem_reader_fail(&ply->r, "PLY format '%s' is not known; export as ascii or binary_little_endian",
-                               dem_word_show(word).text);
+        return dem_reader_unexpected(&ply->r, word, "the format ascii, binary_little_endian or binary_big_endian");
     return DEM_OK;
 }
 
@@ -63,11 +62,11 @@ static dem_status read_element_line(ply_file *ply)
     dem_word name = dem_reader_word(&ply->r);
     *e = (ply_element){.name = dem_word_show(name), .first = ply->property_count};
     e->kind = dem_word_is(name, "vertex") ? PLY_VERTEX : dem_word_is(name, "face") ? PLY_FACE : PLY_OTHER;
-    for (size_t i = 0; i < ply->element_count; i++)
-        if (e->kind != PLY_OTHER && ply->elements[i].kind == e->kind)
+    for (size_t i = 0; e->kind != PLY_OTHER && i < ply->element_count; i++)
+        if (ply->elements[i].kind == e->kind)
             return dem_reader_fail(&ply->r, "a second element '%s' in the header; export the mesh again", e->name.text);
     int64_t count;
-    DEM_TRY(dem_reader_whole(&ply->r, "element", &count));
+    DEM_TRY(dem_reader_whole(&ply->r, &count));
     if (count < 0)
         return dem_reader_fail(&ply->r, "header says %" PRId64 " of element '%s'; export the mesh again", count, e->name.text);
     e->count = (size_t)count;
@@ -82,7 +81,7 @@ static dem_status read_type(ply_file *ply, dem_word word, ply_type *type)
             *type = (ply_type)i;
             return DEM_OK;
         }
-    return dem_reader_fail(&ply->r, "'%s' is no PLY type; export the mesh again", dem_word_show(word).text);
+    return dem_reader_unexpected(&ply->r, word, "a PLY type");
 }
 
 static ply_role role_of(const ply_element *e, dem_word name)
@@ -169,10 +168,9 @@ static dem_status read_header(ply_file *ply)
         else if (dem_word_is(word, "property"))
             DEM_TRY(read_property_line(ply));
         else
-            return dem_reader_fail(r, "'%s' in the PLY header; the file is damaged, export it again",
-                                   dem_word_show(word).text);
+            return dem_reader_unexpected(r, word, "a line of the PLY header");
     }
-    return dem_reader_fail(r, "unexpected end of file in the PLY header; the file is cut short, export it again");
+    return dem_reader_unexpected(r, (dem_word){0}, "'end_header'");
 }
 
 static double binary_value(const char *at, ply_type type, bool big)
@@ -205,7 +203,7 @@ static double binary_value(const char *at, ply_type type, bool big)
 static dem_status read_value(ply_file *ply, ply_type type, const ply_element *e, double *value)
 {
     if (ply->form == PLY_TEXT)
-        return dem_reader_number(&ply->r, e->name.text, value);
+        return dem_reader_number(&ply->r, value);
     size_t size = types[type].size;
     if ((size_t)(ply->r.end - ply->r.at) < size)
         return dem_reader_fail(&ply->r, "unexpected end of file among the %zu elements '%s' of the header; the file is "
@@ -221,12 +219,12 @@ static dem_status read_list(ply_file *ply, const ply_element *e, const ply_prope
     double count, value;
     DEM_TRY(read_value(ply, property->count_type, e, &count));
     if (!(count >= 0 && count <= UINT32_MAX) || count != floor(count))
-        return dem_reader_fail(r, "a list of %g items in element '%s'; the file is damaged, export it again", count,
-                               e->name.text);
+        return dem_reader_fail(r, "a list in element '%s' has a length below 0 or not whole; the file is damaged, export "
+                                  "it again", e->name.text);
     size_t room = (size_t)(r->end - r->at) / (ply->form == PLY_TEXT ? 1 : types[property->type].size);
     if (count > (double)room)
-        return dem_reader_fail(r, "a list of %.0f items in element '%s', file has room for %zu; the file is damaged or "
-                                  "cut short, export it again", count, e->name.text, room);
+        return dem_reader_fail(r, "a list of %zu items in element '%s', file has room for %zu; the file is damaged or "
+                                  "cut short, export it again", (size_t)count, e->name.text, room);
     if (!use && ply->form != PLY_TEXT) {
         r->at += (size_t)count * types[property->type].size;
         return DEM_OK;
@@ -236,8 +234,8 @@ static dem_status read_list(ply_file *ply, const ply_element *e, const ply_prope
         if (!use || property->role != PLY_CORNERS)
             continue;
         if (!(fabs(value) < 0x1p53) || value != floor(value))
-            return dem_reader_fail(r, "face %zu refers to vertex %g; the file is damaged, export it again",
-                                   r->face_count + 1, value);
+            return dem_reader_fail(r, "face %zu refers to a vertex whose number is not whole; the file is damaged, "
+                                      "export it again", r->face_count + 1);
         DEM_TRY(dem_reader_corner(r, (int64_t)value, 0));
     }
     return DEM_OK;

@@ -22,6 +22,21 @@ static double little_float(const char *at)
     return value;
 }
 
+static dem_status read_binary_facet(dem_reader *r)
+{
+    dem_mesh *mesh = r->mesh;
+    for (const char *at = r->at + STL_NORMAL; at < r->at + STL_NORMAL + 36; at += 12) {
+        dem_vec3 p = {little_float(at), little_float(at + 4), little_float(at + 8)};
+        if (!isfinite(p.x) || !isfinite(p.y) || !isfinite(p.z))
+            return dem_reader_fail(r, "triangle %zu (byte %td) has a corner that is not finite; the file is damaged, "
+                                      "export it again", mesh->triangle_count + 1, at - r->bytes);
+        mesh->triangles[mesh->vertex_count] = (uint32_t)mesh->vertex_count;
+        DEM_TRY(dem_reader_vertex(r, p));
+    }
+    mesh->triangle_count++;
+    return DEM_OK;
+}
+
 dem_status dem_read_stl_binary(const dem_ctx *ctx, const char *name, const char *bytes, size_t size, dem_mesh *mesh,
                                dem_error *error)
 {
@@ -42,43 +57,24 @@ dem_status dem_read_stl_binary(const dem_ctx *ctx, const char *name, const char 
     mesh->single_precision = true;
     dem_status status = DEM_OK;
     r.at = bytes + STL_HEADER;
-    for (size_t i = 0; i < count && status == DEM_OK; i++, r.at += STL_FACET) {
-        for (int k = 0; k < 3 && status == DEM_OK; k++) {
-            const char *at = r.at + STL_NORMAL + 12 * k;
-            mesh->triangles[3 * i + (size_t)k] = (uint32_t)mesh->vertex_count;
-            status = dem_reader_vertex(&r, (dem_vec3){little_float(at), little_float(at + 4), little_float(at + 8)});
-        }
-    }
-    mesh->triangle_count = count;
+    for (size_t i = 0; i < count && status == DEM_OK; i++, r.at += STL_FACET)
+        status = read_binary_facet(&r);
     return dem_reader_end(&r, status);
 }
 
-static dem_status cut_short(dem_reader *r, const char *missing)
-{
-    return dem_reader_fail(r, "unexpected end of file, %s is missing; the file is cut short, export it again", missing);
-}
-
-static dem_status expect(dem_reader *r, const char *text)
+static dem_status expect(dem_reader *r, const char *text, const char *wanted)
 {
     dem_word word = dem_reader_word_beyond(r);
-    if (word.length == 0)
-        return cut_short(r, text);
-    if (!dem_word_is(word, text))
-        return dem_reader_fail(r, "'%s' where '%s' should stand; the file is damaged, export it again",
-                               dem_word_show(word).text, text);
-    return DEM_OK;
+    return dem_word_is(word, text) ? DEM_OK : dem_reader_unexpected(r, word, wanted);
 }
 
 // a number may stand on the next line
 static dem_status number_beyond(dem_reader *r, double *value)
 {
     reader_skip_blanks(r);
-    while (r->at == r->stop) {
-        if (!dem_reader_line(r))
-            return cut_short(r, "a coordinate");
+    while (r->at == r->stop && dem_reader_line(r))
         reader_skip_blanks(r);
-    }
-    return dem_reader_number(r, "vertex", value);
+    return dem_reader_number(r, value);
 }
 
 // behind "facet": the normal, which is ignored whatever stands there, and the corners
@@ -87,21 +83,16 @@ static dem_status read_facet(dem_reader *r)
     dem_word word;
     do {
         word = dem_reader_word_beyond(r);
-        if (word.length == 0)
-            return cut_short(r, "'outer loop'");
-        if (dem_word_is(word, "vertex") || dem_word_is(word, "facet") || dem_word_is(word, "endfacet"))
-            return dem_reader_fail(r, "facet without 'outer loop'; the file is damaged, export it again");
+        if (word.length == 0 || dem_word_is(word, "vertex") || dem_word_is(word, "facet") || dem_word_is(word, "endfacet"))
+            return dem_reader_unexpected(r, word, "'outer loop'");
     } while (!dem_word_is(word, "outer"));
-    DEM_TRY(expect(r, "loop"));
+    DEM_TRY(expect(r, "loop", "'loop'"));
     for (;;) {
         word = dem_reader_word_beyond(r);
-        if (word.length == 0)
-            return cut_short(r, "'endloop'");
         if (dem_word_is(word, "endloop"))
             break;
         if (!dem_word_is(word, "vertex"))
-            return dem_reader_fail(r, "'%s' where 'vertex' or 'endloop' should stand; the file is damaged, export it "
-                                      "again", dem_word_show(word).text);
+            return dem_reader_unexpected(r, word, "'vertex' or 'endloop'");
         dem_vec3 p;
         DEM_TRY(number_beyond(r, &p.x));
         DEM_TRY(number_beyond(r, &p.y));
@@ -109,7 +100,7 @@ static dem_status read_facet(dem_reader *r)
         DEM_TRY(dem_reader_vertex(r, p));
         DEM_TRY(dem_reader_corner(r, (int64_t)r->mesh->vertex_count - 1, 0));
     }
-    DEM_TRY(expect(r, "endfacet"));
+    DEM_TRY(expect(r, "endfacet", "'endfacet'"));
     return dem_reader_face(r);
 }
 
@@ -146,8 +137,7 @@ static dem_status read_solids(dem_reader *r)
             r->at = r->stop;
             open = false;
         } else {
-            return dem_reader_fail(r, "'%s' where 'facet' or 'endsolid' should stand; the file is damaged, export it "
-                                      "again", dem_word_show(word).text);
+            return dem_reader_unexpected(r, word, "'facet' or 'endsolid'");
         }
     }
     if (open)

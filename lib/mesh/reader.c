@@ -123,48 +123,56 @@ dem_shown dem_word_show(dem_word word)
     return shown;
 }
 
-// says what stands where a number should
-static dem_status no_number(dem_reader *r, const char *what)
+dem_status dem_reader_unexpected(const dem_reader *r, dem_word word, const char *wanted)
 {
-    dem_word word = dem_reader_word(r);
+    if (word.length == 0 && r->next < r->end)
+        return dem_reader_fail(r, "the line ends where %s should stand; the file is damaged, export it again", wanted);
     if (word.length == 0)
-        return dem_reader_fail(r, "the line ends where a number of the %s should stand; the file is cut short or "
-                                  "damaged, export it again", what);
+        return dem_reader_fail(r, "unexpected end of file where %s should stand; the file is cut short, export it again",
+                               wanted);
     dem_shown shown = dem_word_show(word);
-    if (memchr(word.text, ',', word.length))
-        return dem_reader_fail(r, "'%s' has a comma; write numbers with a decimal point, and blanks between them",
-                               shown.text);
-    return dem_reader_fail(r, "'%s' where a number of the %s should stand; the file is damaged, export it again",
-                           shown.text, what);
+    if (word.text + word.length == r->end)
+        return dem_reader_fail(r, "unexpected end of file after '%s', where %s should stand; the file is cut short, export "
+                                  "it again", shown.text, wanted);
+    return dem_reader_fail(r, "'%s' where %s should stand; the file is damaged, export it again", shown.text, wanted);
 }
 
-dem_status dem_reader_number(dem_reader *r, const char *what, double *value)
+static dem_status no_number(dem_reader *r, const char *wanted)
+{
+    dem_word word = dem_reader_word(r);
+    if (word.length && memchr(word.text, ',', word.length))
+        return dem_reader_fail(r, "'%s' has a comma; write numbers with a decimal point, and blanks between them",
+                               dem_word_show(word).text);
+    return dem_reader_unexpected(r, word, wanted);
+}
+
+dem_status dem_reader_number(dem_reader *r, double *value)
 {
     reader_skip_blanks(r);
     const char *p = dem_parse_double(r->at, r->stop, value);
     if (!p || (p < r->stop && !text_is_blank(*p) && !(*p == '\\' && p + 1 == r->stop)))
-        return no_number(r, what);
+        return no_number(r, "a number");
     r->at = p;
     return DEM_OK;
 }
 
-dem_status dem_reader_whole(dem_reader *r, const char *what, int64_t *value)
+dem_status dem_reader_whole(dem_reader *r, int64_t *value)
 {
     reader_skip_blanks(r);
     long number;
     const char *p = dem_parse_long(r->at, r->stop, &number);
     if (!p || (p < r->stop && !text_is_blank(*p)))
-        return no_number(r, what);
+        return no_number(r, "a whole number");
     r->at = p;
     *value = number;
     return DEM_OK;
 }
 
-dem_status dem_reader_point(dem_reader *r, const char *what, dem_vec3 *point)
+dem_status dem_reader_point(dem_reader *r, dem_vec3 *point)
 {
-    DEM_TRY(dem_reader_number(r, what, &point->x));
-    DEM_TRY(dem_reader_number(r, what, &point->y));
-    return dem_reader_number(r, what, &point->z);
+    DEM_TRY(dem_reader_number(r, &point->x));
+    DEM_TRY(dem_reader_number(r, &point->y));
+    return dem_reader_number(r, &point->z);
 }
 
 static dem_status go_on(const dem_reader *r)

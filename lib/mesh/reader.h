@@ -56,10 +56,12 @@ typedef struct dem_shown {
 } dem_shown;
 dem_shown dem_word_show(dem_word word);
 
-/// The next number of the line; `what` names what it belongs to ("vertex", "counts").
-dem_status dem_reader_number(dem_reader *r, const char *what, double *value);
-dem_status dem_reader_whole(dem_reader *r, const char *what, int64_t *value);
-dem_status dem_reader_point(dem_reader *r, const char *what, dem_vec3 *point);
+/// The next number of the line.
+dem_status dem_reader_number(dem_reader *r, double *value);
+dem_status dem_reader_whole(dem_reader *r, int64_t *value);
+dem_status dem_reader_point(dem_reader *r, dem_vec3 *point);
+/// Fails over the word just read, where something else was wanted.
+dem_status dem_reader_unexpected(const dem_reader *r, dem_word word, const char *wanted);
 
 /// Adds a vertex; refuses what is not finite.
 dem_status dem_reader_vertex(dem_reader *r, dem_vec3 p);
