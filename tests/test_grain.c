@@ -168,7 +168,8 @@ static void harmonic_grains_have_the_descriptors_asked_for(void **state)
 {
     (void)state;
     // d2, d8, exponent, roughness, form, degree
-    const double cases[][6] = {{0.15, 0.012, 1.4, 1, NAN, 15}, {0.05, 0.02, 0, 0.5, -1, 15}, {0.2, 0.005, 2, 3, 0.3, 11}};
+    const double cases[][6] = {
+        {0.15, 0.012, 1.4, 1, NAN, 15}, {0.05, 0.02, 0, 0.5, -1, 15}, {0.2, 0.005, 2, 3, 0.3, 11}};
     for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
         dem_grain_options o = of_kind("harmonics");
         o.values = cases[i];
@@ -275,9 +276,12 @@ static void facets_make_a_convex_polyhedron(void **state)
             bool first = true;
             for (size_t v = 0; v < mesh.vertex_count; v++)
                 check(above(&mesh, t, mesh.vertices[v]) < 1e-9 * o.size + 1e-14);
-            for (size_t s = 0; s < t && first; s++)
-                first = fabs(above(&mesh, s, corner(&mesh, t, 0))) + fabs(above(&mesh, s, corner(&mesh, t, 1))) +
-                            fabs(above(&mesh, s, corner(&mesh, t, 2))) > 1e-14;
+            for (size_t s = 0; s < t && first; s++) {
+                double apart = 0;
+                for (size_t k = 0; k < 3; k++)
+                    apart += fabs(above(&mesh, s, corner(&mesh, t, k)));
+                first = apart > 1e-14;
+            }
             planes += first;
         }
         check(planes >= 8 && planes <= 20);
@@ -363,8 +367,14 @@ static void values_out_of_range_are_refused_by_name(void **state)
 {
     (void)state;
     dem_grain_options bad[8];
-    const char *const want[] = {"potato", "triangles", "elongation", "dents", "d2 must be a number from 0 to 0.4, not 7",
-                                "faces must be a whole number", "size", "flatness"};
+    const char *const want[] = {"potato",
+                                "triangles",
+                                "elongation",
+                                "dents",
+                                "d2 must be a number from 0 to 0.4, not 7",
+                                "faces must be a whole number",
+                                "size",
+                                "flatness"};
     for (size_t i = 0; i < 8; i++)
         bad[i] = of_kind(i == 0 ? "potato" : i == 5 ? "facets" : "harmonics");
     bad[1].triangles = 3;

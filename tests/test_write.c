@@ -81,8 +81,10 @@ static void digits_are_those_asked_for(void **state)
 static void stl_holds_a_normal_and_three_corners_per_triangle(void **state)
 {
     (void)state;
-    dem_buffer out = written(DEM_MESH_STL, "a comment longer than the eighty bytes of the header, which has to be cut "
-                                           "somewhere near its end", 17);
+    dem_buffer out = written(DEM_MESH_STL,
+                             "a comment longer than the eighty bytes of the header, which has to be cut "
+                             "somewhere near its end",
+                             17);
     check(out.size == 84 + 50 * 4);
     check(strncmp(out.data, "solid", 5) != 0 && strstr(out.data, "a comment"));
     check(memcmp(out.data + 80, "\4\0\0\0", 4) == 0);

@@ -16,7 +16,7 @@ typedef struct parser {
     const cli_tool *tool;
     char **arguments;  // argv without the program's name
     int count, at;
-    int status;        // of a failure already reported
+    int status;  // of a failure already reported
 } parser;
 
 void cli_texts_release(cli_texts *texts)
@@ -211,9 +211,10 @@ static bool take_choice(parser *p, const cli_option *option, const char *text)
             return true;
         }
     char name[NAME_BYTES], all[600] = "";
-    for (size_t i = 0; i < names.count; i++)
-        snprintf(all + strlen(all), sizeof all - strlen(all), "%s%s",
-                 i == 0 ? "" : i + 1 < names.count ? ", " : " or ", names.names[i]);
+    for (size_t i = 0; i < names.count; i++) {
+        const char *between = i == 0 ? "" : i + 1 < names.count ? ", " : " or ";
+        snprintf(all + strlen(all), sizeof all - strlen(all), "%s%s", between, names.names[i]);
+    }
     const char *near = cli_nearest(text, choice_name, &names);
     if (near)
         return fail(p, "%s must be %s, not '%s'; did you mean %s?", shown(option, name), all, text, near);
@@ -275,7 +276,8 @@ static const cli_option *find(const cli_tool *tool, const char *name, size_t len
         const cli_option *option = &tool->options[i];
         if (!option->name)
             continue;
-        if (name ? strlen(option->name) == length && strncmp(option->name, name, length) == 0 : option->letter == letter)
+        if (name ? strlen(option->name) == length && strncmp(option->name, name, length) == 0
+                 : option->letter == letter)
             return option;
     }
     return NULL;

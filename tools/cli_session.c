@@ -34,8 +34,8 @@ static void print_line(const char *tool, const char *level, const char *colour, 
         if ((unsigned char)*c < ' ' || *c == 127)
             *c = '?';
     bool coloured = colour && cli_colours(stderr);
-    fprintf(stderr, "%s: %s%s%s%s%s\n", tool, coloured ? colour : "", level, coloured ? "\033[0m" : "", *level ? " " : "",
-            line);
+    fprintf(stderr, "%s: %s%s%s%s%s\n", tool, coloured ? colour : "", level, coloured ? "\033[0m" : "",
+            *level ? " " : "", line);
 }
 
 static const char RED[] = "\033[1;31m", YELLOW[] = "\033[1;33m";

@@ -192,7 +192,8 @@ static void put_summary(dem_buffer *out, const settings *s, const dem_mesh *mesh
     double factor;
     const char *unit = dem_length_unit(fmax(m->extent.x, fmax(m->extent.y, m->extent.z)), &factor);
     dem_buffer_print(out, "%s: %s, seed %ld\n", s->output, s->grain.kind, s->common.seed);
-    dem_buffer_print(out, "  triangles            %zu, %zu vertices, closed\n", mesh->triangle_count, mesh->vertex_count);
+    dem_buffer_print(out, "  triangles            %zu, %zu vertices, closed\n", mesh->triangle_count,
+                     mesh->vertex_count);
     dem_buffer_text(out, "  equivalent diameter  ");
     dem_buffer_number(out, m->diameter * factor, 5);
     dem_buffer_print(out, " %s\n  extent x, y, z       ", unit);
@@ -310,16 +311,19 @@ int main(int argc, char **argv)
         {"list", 0, CLI_FLAG, NULL, "list the kinds with their parameters", &s.list, 0, 0},
         {"output", 'o', CLI_TEXT, "FILE", "file to write: .obj, .stl, .ply or .off; - is standard output (OBJ)",
          &s.output, 0, 0},
-        {"size", 0, CLI_LENGTH, "D", "diameter of the sphere of equal volume (default 1 mm; an ellipsoid's is as its axes "
-         "give it)", &s.grain.size, 1e-9, 1e9},
+        {"size", 0, CLI_LENGTH, "D",
+         "diameter of the sphere of equal volume (default 1 mm; an ellipsoid's is as its axes "
+         "give it)",
+         &s.grain.size, 1e-9, 1e9},
         {"triangles", 0, CLI_WHOLE, "N", "about so many (default 3000)", &s.triangles, DEM_GRAIN_MIN_TRIANGLES,
          DEM_GRAIN_MAX_TRIANGLES},
         {"elongation", 0, CLI_NUMBER, "X", "multiply y and z by this, 0.02 to 1 (default 1)", &s.grain.elongation,
          DEM_GRAIN_MIN_STRETCH, 1},
-        {"flatness", 0, CLI_NUMBER, "X", "multiply z by this, 0.02 to 1 (default 1)", &s.grain.flatness, DEM_GRAIN_MIN_STRETCH, 1},
+        {"flatness", 0, CLI_NUMBER, "X", "multiply z by this, 0.02 to 1 (default 1)", &s.grain.flatness,
+         DEM_GRAIN_MIN_STRETCH, 1},
         {"dents", 0, CLI_WHOLE, "N", "hollows pressed into the surface (default 0)", &s.dents, 0, DEM_GRAIN_MAX_DENTS},
-        {"dent-depth", 0, CLI_NUMBER, "X", "their depth over the radius, 0 to 0.8 (default 0.4)", &s.grain.dent_depth, 0,
-         DEM_GRAIN_MAX_DEPTH},
+        {"dent-depth", 0, CLI_NUMBER, "X", "their depth over the radius, 0 to 0.8 (default 0.4)", &s.grain.dent_depth,
+         0, DEM_GRAIN_MAX_DEPTH},
         {"dent-width", 0, CLI_NUMBER, "DEG", "angle from their middle to their rim, 5 to 90 degrees (default 45)",
          &s.grain.dent_width_deg, DEM_GRAIN_MIN_WIDTH, 90},
     };
@@ -332,7 +336,8 @@ int main(int argc, char **argv)
     const cli_tool tool = {
         .name = "dem-grain",
         .usage = "[--kind NAME] [options] -o FILE",
-        .about = "Makes irregular grain meshes: closed, free of self-intersections, the same for the same options and seed.",
+        .about =
+            "Makes irregular grain meshes: closed, free of self-intersections, the same for the same options and seed.",
         .options = options,
         .option_count = count,
         .epilogue = "Examples:\n"

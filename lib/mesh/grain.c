@@ -62,8 +62,8 @@ static dem_status check_range(const char *name, double value, double low, double
 
 static dem_status check_options(const dem_grain_options *o, dem_error *error)
 {
-    DEM_TRY(check_range("triangles", (double)o->triangles, DEM_GRAIN_MIN_TRIANGLES, DEM_GRAIN_MAX_TRIANGLES, true,
-                        error));
+    DEM_TRY(
+        check_range("triangles", (double)o->triangles, DEM_GRAIN_MIN_TRIANGLES, DEM_GRAIN_MAX_TRIANGLES, true, error));
     DEM_TRY(check_range("elongation", o->elongation, DEM_GRAIN_MIN_STRETCH, 1, false, error));
     DEM_TRY(check_range("flatness", o->flatness, DEM_GRAIN_MIN_STRETCH, 1, false, error));
     DEM_TRY(check_range("dents", (double)o->dents, 0, DEM_GRAIN_MAX_DENTS, true, error));
@@ -139,8 +139,8 @@ static dem_status star_volume(const dem_mesh *mesh, const char *kind, double *vo
         const uint32_t *v = &mesh->triangles[3 * t];
         double six = v3_dot(mesh->vertices[v[0]], v3_cross(mesh->vertices[v[1]], mesh->vertices[v[2]]));
         if (!(six > 0) || !isfinite(six))
-            return dem_fail(error, DEM_FAILED, "%s: the surface folds over itself; use milder parameters or another seed",
-                            kind);
+            return dem_fail(error, DEM_FAILED,
+                            "%s: the surface folds over itself; use milder parameters or another seed", kind);
         sum_add(&sum, six / 6);
     }
     *volume = sum_value(sum);

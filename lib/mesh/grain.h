@@ -12,7 +12,7 @@ typedef struct dem_grain_param {
     const char *name;
     double standard;  ///< used when none is given; NAN: drawn from the seed
     double low, high;
-    const char *unit; ///< "-" pure number, "m" length, "count" whole number
+    const char *unit;  ///< "-" pure number, "m" length, "count" whole number
     const char *help;
 } dem_grain_param;
 
@@ -20,7 +20,7 @@ typedef struct dem_grain_param {
 typedef struct dem_grain_request {
     const double *values;  ///< one per parameter of the kind, all in range
     uint64_t seed;
-    size_t triangles;      ///< about so many
+    size_t triangles;  ///< about so many
 } dem_grain_request;
 
 /// One way to make a grain. The mesh is closed, faces outwards and is star-shaped about the origin: each ray from
@@ -43,7 +43,7 @@ bool dem_grain_kind_has_size(const dem_grain_kind *kind);
 /// A grain to make. Start from dem_grain_defaults.
 typedef struct dem_grain_options {
     const char *kind;
-    const double *values;   ///< one per parameter of the kind, NAN: its default; NULL: all defaults
+    const double *values;  ///< one per parameter of the kind, NAN: its default; NULL: all defaults
     uint64_t seed;
     size_t triangles;       ///< about so many
     double size;            ///< diameter of the sphere of equal volume [m]; 0: the kind's own, or 1 mm

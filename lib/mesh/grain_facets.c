@@ -129,7 +129,8 @@ static dem_status make(const dem_ctx *ctx, const dem_grain_request *request, dem
     for (int i = 0; i < p.plane_count; i++)
         p.distances[i] = 1 - request->values[SPREAD] * random_uniform(&random);
     if (!find_corners(&p))
-        return dem_fail(error, DEM_USAGE, "the planes of this seed enclose no polyhedron; take more faces or another seed");
+        return dem_fail(error, DEM_USAGE,
+                        "the planes of this seed enclose no polyhedron; take more faces or another seed");
     // a fan has one triangle per edge of its face, and each of the 3/2 corners edges has two faces
     dem_vec3 vertices[MAX_CORNERS + MAX_FACES];
     uint32_t triangles[9 * MAX_CORNERS];

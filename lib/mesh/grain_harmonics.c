@@ -29,9 +29,9 @@ static const dem_grain_param params[] = {
 
 typedef struct harmonics {
     int degree;
-    double c[TERMS];                    // c_nm at n^2 + n + m; m < 0 are the sines
-    double rise[TERMS], fall[TERMS];    // of the Legendre recurrence, at n^2 + n + m
-    double sector[MAX_DEGREE + 1];      // P_mm / sin^m
+    double c[TERMS];                  // c_nm at n^2 + n + m; m < 0 are the sines
+    double rise[TERMS], fall[TERMS];  // of the Legendre recurrence, at n^2 + n + m
+    double sector[MAX_DEGREE + 1];    // P_mm / sin^m
 } harmonics;
 
 static int term(int n, int m)
@@ -121,8 +121,9 @@ static dem_status place(const dem_ctx *ctx, const harmonics *h, dem_mesh *mesh, 
             return dem_fail(error, DEM_INTERRUPTED, "interrupted; nothing was written");
     }
     if (thinnest < THINNEST)
-        return dem_fail(error, DEM_USAGE, "the grain of these descriptors and this seed is hollowed out to its "
-                                          "centre; lower d2 or d8, or take another seed");
+        return dem_fail(error, DEM_USAGE,
+                        "the grain of these descriptors and this seed is hollowed out to its "
+                        "centre; lower d2 or d8, or take another seed");
     return DEM_OK;
 }
 
