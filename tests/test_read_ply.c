@@ -16,14 +16,15 @@ static void put(dem_buffer *out, int form, const char *type, double value)
     size_t k = 0;
     while (strcmp(names[k], type) != 0)
         k++;
-    float single = (float)value;
+    float single = k == 6 ? (float)value : 0;
     uint32_t single_bits;
-    uint64_t bits = (uint64_t)(int64_t)value;
+    uint64_t bits;
     memcpy(&single_bits, &single, 4);
+    memcpy(&bits, &value, 8);
     if (k == 6)
         bits = single_bits;
-    if (k == 7)
-        memcpy(&bits, &value, 8);
+    if (k < 6)
+        bits = (uint64_t)(int64_t)value;
     for (size_t i = 0; i < sizes[k]; i++)
         dem_buffer_bytes(out, (char[]){(char)(bits >> 8 * (form == LITTLE ? i : sizes[k] - 1 - i))}, 1);
 }
