@@ -2,22 +2,12 @@
 #ifndef DEM_GEOM_BALL_TREE_H
 #define DEM_GEOM_BALL_TREE_H
 
-#include "base/memory.h"
-#include "math/vec.h"
-
-typedef struct dem_ball_node {
-    dem_box box;          ///< of the whole balls
-    uint32_t begin, end;  ///< range of `order`; the left child follows its parent
-    uint32_t right;       ///< 0: leaf
-} dem_ball_node;
+#include "geom/box_tree.h"
 
 /// Borrowed balls must outlive the tree.
 typedef struct dem_ball_tree {
     const dem_ball *balls;
-    size_t count;
-    dem_ball_node *nodes;
-    size_t node_count;
-    uint32_t *order;  ///< ball indices, leaf by leaf
+    dem_box_tree boxes;  ///< of whole balls
 } dem_ball_tree;
 
 dem_status dem_ball_tree_build(dem_ball_tree *tree, const dem_ball *balls, size_t count, dem_error *error);

@@ -75,7 +75,7 @@ dem_patch_work *dem_patch_work_create(const dem_ball_tree *tree)
     if (!w)
         return NULL;
     w->tree = tree;
-    w->near = dem_alloc(tree->count, sizeof *w->near);
+    w->near = dem_alloc(tree->boxes.count, sizeof *w->near);
     if (!w->near) {
         free(w);
         return NULL;

@@ -1,9 +1,8 @@
 #include "geom/tree.h"
 
 #include <stdlib.h>
-#include <string.h>
 
-enum { LEAF_TRIANGLES = 4, STACK = 96 };
+enum { LEAF_TRIANGLES = 4 };
 
 dem_vec3 dem_triangle_closest(dem_vec3 p, dem_vec3 a, dem_vec3 b, dem_vec3 c)
 {
@@ -39,61 +38,12 @@ static dem_vec3 corner(const dem_tree *tree, uint32_t triangle, int k)
     return tree->vertices[tree->triangles[3 * (size_t)triangle + (size_t)k]];
 }
 
-typedef struct tree_builder {
-    dem_tree *tree;
-    dem_vec3 *centres;
-} tree_builder;
-
-static dem_box range_box(const dem_tree *tree, uint32_t begin, uint32_t end)
+static dem_box triangle_box(const void *items, uint32_t triangle)
 {
     dem_box box = box_empty();
-    for (uint32_t i = begin; i < end; i++)
-        for (int k = 0; k < 3; k++)
-            box = box_with(box, corner(tree, tree->order[i], k));
+    for (int k = 0; k < 3; k++)
+        box = box_with(box, corner(items, triangle, k));
     return box;
-}
-
-// quickselect of order[begin, end) about position `middle` by centre coordinate
-static void split_at(tree_builder *b, uint32_t begin, uint32_t end, uint32_t middle, int axis)
-{
-    uint32_t *order = b->tree->order;
-    int64_t low = begin, high = (int64_t)end - 1;
-    while (low < high) {
-        double pivot = v3_get(b->centres[order[low + (high - low) / 2]], axis);
-        int64_t i = low, j = high;
-        while (i <= j) {
-            while (v3_get(b->centres[order[i]], axis) < pivot)
-                i++;
-            while (v3_get(b->centres[order[j]], axis) > pivot)
-                j--;
-            if (i <= j) {
-                uint32_t swap = order[i];
-                order[i++] = order[j];
-                order[j--] = swap;
-            }
-        }
-        if (middle <= j)
-            high = j;
-        else if (middle >= i)
-            low = i;
-        else
-            return;
-    }
-}
-
-static uint32_t build_range(tree_builder *b, uint32_t begin, uint32_t end)
-{
-    uint32_t me = (uint32_t)b->tree->node_count++;
-    b->tree->nodes[me] = (dem_tree_node){.box = range_box(b->tree, begin, end), .begin = begin, .end = end};
-    if (end - begin > LEAF_TRIANGLES) {
-        dem_vec3 size = v3_sub(b->tree->nodes[me].box.high, b->tree->nodes[me].box.low);
-        int axis = size.x >= size.y && size.x >= size.z ? 0 : size.y >= size.z ? 1 : 2;
-        uint32_t middle = begin + (end - begin) / 2;
-        split_at(b, begin, end, middle, axis);
-        build_range(b, begin, middle);
-        b->tree->nodes[me].right = build_range(b, middle, end);
-    }
-    return me;
 }
 
 dem_status dem_tree_build(dem_tree *tree, const dem_vec3 *vertices, const uint32_t *triangles, size_t count,
@@ -102,22 +52,14 @@ dem_status dem_tree_build(dem_tree *tree, const dem_vec3 *vertices, const uint32
     *tree = (dem_tree){.vertices = vertices, .triangles = triangles, .count = count};
     if (count == 0)
         return dem_fail(error, DEM_BAD_INPUT, "no triangles; give a mesh with faces");
-    tree->nodes = dem_alloc(2 * count, sizeof *tree->nodes);
-    tree->order = dem_alloc(count, sizeof *tree->order);
-    dem_vec3 *centres = dem_alloc(count, sizeof *centres);
-    if (!tree->nodes || !tree->order || !centres) {
-        free(centres);
-        dem_tree_release(tree);
+    if (count >= UINT32_MAX / 2)
+        return dem_fail(error, DEM_BAD_INPUT, "%zu triangles; give fewer than 2^31", count);
+    dem_box_tree boxes;
+    if (!dem_box_tree_build(&boxes, tree, count, LEAF_TRIANGLES, triangle_box))
         return dem_fail_memory(error);
-    }
-    for (size_t i = 0; i < count; i++) {
-        tree->order[i] = (uint32_t)i;
-        dem_vec3 sum = v3_add(v3_add(corner(tree, (uint32_t)i, 0), corner(tree, (uint32_t)i, 1)), corner(tree, (uint32_t)i, 2));
-        centres[i] = v3_scale(sum, 1.0 / 3);
-    }
-    tree_builder builder = {tree, centres};
-    build_range(&builder, 0, (uint32_t)count);
-    free(centres);
+    tree->nodes = boxes.nodes;
+    tree->node_count = boxes.node_count;
+    tree->order = boxes.order;
     return DEM_OK;
 }
 
@@ -132,12 +74,12 @@ double dem_tree_closest(const dem_tree *tree, dem_vec3 p, double limit, dem_vec3
 {
     double best = limit * limit;
     bool found = false;
-    uint32_t stack[STACK];
+    uint32_t stack[DEM_BOX_TREE_STACK];
     int top = 0;
     stack[top++] = 0;
     while (top) {
         uint32_t at = stack[--top];
-        const dem_tree_node *node = &tree->nodes[at];
+        const dem_box_node *node = &tree->nodes[at];
         if (box_distance2(&node->box, p) >= best)
             continue;
         if (node->right) {
@@ -181,11 +123,11 @@ int dem_tree_winding(const dem_tree *tree, dem_vec3 p, dem_vec3 d)
 {
     dem_vec3 inverse = v3(1 / d.x, 1 / d.y, 1 / d.z);
     int winding = 0, top = 0;
-    uint32_t stack[STACK];
+    uint32_t stack[DEM_BOX_TREE_STACK];
     stack[top++] = 0;
     while (top) {
         uint32_t at = stack[--top];
-        const dem_tree_node *node = &tree->nodes[at];
+        const dem_box_node *node = &tree->nodes[at];
         if (!ray_meets_box(&node->box, p, inverse))
             continue;
         if (node->right) {

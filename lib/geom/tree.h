@@ -2,17 +2,12 @@
 #ifndef DEM_GEOM_TREE_H
 #define DEM_GEOM_TREE_H
 
-#include "base/memory.h"
-#include "math/vec.h"
+#include "geom/box_tree.h"
 
 /// Closest point of triangle (a, b, c) to p (Ericson 2005, 5.1.5); works for degenerate triangles.
 dem_vec3 dem_triangle_closest(dem_vec3 p, dem_vec3 a, dem_vec3 b, dem_vec3 c);
 
-typedef struct dem_tree_node {
-    dem_box box;
-    uint32_t begin, end;  ///< range of `order`; the left child follows its parent, the right one is `right`
-    uint32_t right;       ///< 0: leaf
-} dem_tree_node;
+typedef dem_box_node dem_tree_node;
 
 /// Borrowed vertices and triangles must outlive the tree.
 typedef struct dem_tree {
@@ -37,13 +32,5 @@ int dem_tree_winding(const dem_tree *tree, dem_vec3 p, dem_vec3 d);
 
 /// True where p lies inside a closed surface, whatever its orientation: a vote of three generic directions.
 bool dem_tree_inside(const dem_tree *tree, dem_vec3 p);
-
-static inline double box_distance2(const dem_box *box, dem_vec3 p)
-{
-    double x = fmax(0, fmax(box->low.x - p.x, p.x - box->high.x));
-    double y = fmax(0, fmax(box->low.y - p.y, p.y - box->high.y));
-    double z = fmax(0, fmax(box->low.z - p.z, p.z - box->high.z));
-    return x * x + y * y + z * z;
-}
 
 #endif

@@ -85,7 +85,7 @@ static bool boundary_closes(const dem_ball *balls, const dem_patch *patches, siz
 static bool union_compute(const dem_ball_tree *tree, bool want_arcs, dem_ball_union *result)
 {
     const dem_ball *balls = tree->balls;
-    size_t arc_room = 0, count = tree->count;
+    size_t arc_room = 0, count = tree->boxes.count;
     dem_patch_work *w = dem_patch_work_create(tree);
     *result = (dem_ball_union){.patches = dem_alloc(count, sizeof *result->patches)};
     bool done = w && result->patches;
