@@ -94,6 +94,8 @@ static const char *known_stranger(const char *bytes, size_t size)
         {"%PDF", "is a PDF document, not a mesh"},
         {"\x7f" "ELF", "is a program, not a mesh"},
         {"\x1f\x8b", "is compressed; unpack it with gunzip first"},
+        {"PK\x03\x04", "is a zip archive; unpack it first"},
+        {"glTF", "is a glTF scene, which only the import by assimp reads; export the mesh as STL, OBJ, PLY or OFF"},
         {"BZh", "is compressed; unpack it with bunzip2 first"},
         {"\xfd" "7zXZ", "is compressed; unpack it with unxz first"},
         {"\xff\xfe", "is UTF-16 text; save it as UTF-8 or ASCII"},
