@@ -1,0 +1,62 @@
+#include "out/export.h"
+
+static void put_comment(dem_buffer *out, const char *what, const double *values, int count)
+{
+    dem_buffer_print(out, "# %s", what);
+    for (int i = 0; i < count; i++) {
+        dem_buffer_text(out, " ");
+        dem_buffer_number(out, values[i], 17);
+    }
+    dem_buffer_text(out, "\n");
+}
+
+// comments are one line each, whatever the name
+static void put_title(dem_buffer *out, const dem_clump_def *clump)
+{
+    dem_buffer_text(out, "# ");
+    for (const char *p = clump->name; *p; p++)
+        dem_buffer_bytes(out, (unsigned char)*p < ' ' ? " " : p, 1);
+    dem_buffer_print(out, ": %zu spheres of dem-clump " DEM_VERSION "\n", clump->ball_count);
+}
+
+static void put_head(dem_buffer *out, const dem_clump_def *clump, const dem_export_options *options)
+{
+    bool mesh_frame = options->frame == DEM_FRAME_MESH;
+    dem_vec3 centre = export_ball(options, clump, (dem_ball){{0, 0, 0}, 0}).centre, p = clump->position;
+    dem_quat q = clump->orientation;
+    put_title(out, clump);
+    dem_buffer_print(out, "# frame: %s\n", mesh_frame ? "mesh, that of the file it was made from"
+                                                      : "principal, centre of mass at 0, axes I1 <= I2 <= I3");
+    dem_buffer_print(out, "# unit of x y z r: %s\n", export_unit(options));
+    put_comment(out, "density [kg/m^3]:", &clump->density, 1);
+    put_comment(out, "mass [kg]:", &clump->mass, 1);
+    put_comment(out, "centre of mass:", (double[]){centre.x, centre.y, centre.z}, 3);
+    put_comment(out, "principal moments of inertia [kg m^2]:", clump->inertia, 3);
+    put_comment(out, "principal to mesh frame, position [m]:", (double[]){p.x, p.y, p.z}, 3);
+    put_comment(out, "principal to mesh frame, quaternion w x y z:", (double[]){q.w, q.x, q.y, q.z}, 4);
+    dem_buffer_text(out, "# x y z r\n");
+}
+
+static dem_status write_xyzr(const dem_clump *clump, const dem_export_options *options, dem_buffer *out,
+                             dem_error *error)
+{
+    dem_clump_def def = dem_clump_view(clump);
+    put_head(out, &def, options);
+    for (size_t i = 0; i < def.ball_count; i++) {
+        dem_ball b = export_ball(options, &def, def.balls[i]);
+        const double values[4] = {b.centre.x, b.centre.y, b.centre.z, b.radius};
+        for (int k = 0; k < 4; k++) {
+            dem_buffer_number(out, values[k], 17);
+            dem_buffer_text(out, k < 3 ? " " : "\n");
+        }
+    }
+    return out->failed ? dem_fail_memory(error) : DEM_OK;
+}
+
+extern const dem_exporter dem_export_xyzr;
+const dem_exporter dem_export_xyzr = {
+    .name = "xyzr",
+    .suffix = "xyzr",
+    .about = "text, one sphere x y z r a line; comments (#) tell unit, frame, mass and inertia",
+    .write = write_xyzr,
+};

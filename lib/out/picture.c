@@ -1,0 +1,174 @@
+#include "out/picture.h"
+
+#include <stdlib.h>
+
+#include "base/file.h"
+#include "base/memory.h"
+#include "geom/union.h"
+#include "math/mat3.h"
+
+enum { WIDTH = 2000, HEIGHT = 1000, HUES = 6, SWEEPS = 4 };
+
+static const double TURN = 28 * DEM_PI / 180;  // of the long axis out of the picture's plane
+static const double MARGIN = 0.07;
+
+static const dem_colour STONE = {0.46f, 0.41f, 0.35f};
+
+// second moments of a surface about its centre
+static dem_sym3 surface_spread(const dem_mesh *mesh)
+{
+    dem_sym3 sum = {0};
+    dem_vec3 first = {0}, origin = mesh->vertices[mesh->triangles[0]];
+    double area = 0;
+    for (size_t t = 0; t < mesh->triangle_count; t++) {
+        dem_vec3 corner[3];
+        for (int k = 0; k < 3; k++)
+            corner[k] = v3_sub(mesh->vertices[mesh->triangles[3 * t + (size_t)k]], origin);
+        double a = v3_norm(v3_cross(v3_sub(corner[1], corner[0]), v3_sub(corner[2], corner[0]))) / 2;
+        dem_vec3 middle = v3_scale(v3_add(v3_add(corner[0], corner[1]), corner[2]), 1.0 / 3);
+        area += a;
+        first = v3_along(first, a, middle);
+        // int x x^T dA = A / 12 (9 m m^T + sum of c c^T)
+        sum = sym3_add(sum, sym3_scale(sym3_outer(middle), a * 9 / 12));
+        for (int k = 0; k < 3; k++)
+            sum = sym3_add(sum, sym3_scale(sym3_outer(corner[k]), a / 12));
+    }
+    return area > 0 ? sym3_add(sum, sym3_scale(sym3_outer(first), -1 / area)) : sum;
+}
+
+static dem_sym3 balls_spread(const dem_ball *balls, size_t count)
+{
+    dem_sym3 sum = {0};
+    dem_vec3 first = {0};
+    double volume = 0;
+    for (size_t i = 0; i < count; i++) {
+        double r = balls[i].radius, v = r * r * r, own = v * r * r / 5;
+        dem_vec3 c = v3_sub(balls[i].centre, balls[0].centre);
+        volume += v;
+        first = v3_along(first, v, c);
+        sum = sym3_add(sum, sym3_scale(sym3_outer(c), v));
+        sum = sym3_add(sum, (dem_sym3){own, own, own, 0, 0, 0});
+    }
+    return sym3_add(sum, sym3_scale(sym3_outer(first), -1 / volume));
+}
+
+// the grain lies flat, its long axis turned a little out of the picture, seen from above
+static dem_camera choose_camera(dem_sym3 spread)
+{
+    double sizes[3];
+    dem_vec3 axes[3];  // shortest first
+    dem_sym3_eigen(spread, sizes, axes);
+    // the flatter it is, the more from above
+    double thickness = sqrt(fmax(sizes[0], 0) / fmax(sizes[1], 1e-300)), elevation = (62 - 26 * thickness) * DEM_PI / 180;
+    dem_vec3 up = axes[0], toward = v3_add(v3_scale(axes[1], cos(TURN)), v3_scale(axes[2], sin(TURN)));
+    dem_vec3 eye = v3_add(v3_scale(toward, cos(elevation)), v3_scale(up, sin(elevation)));
+    return (dem_camera){.forward = v3_scale(eye, -1), .up = up, .margin = MARGIN};
+}
+
+// OKLCh (Ottosson 2020) to linear light; `hue` in turns
+static dem_colour from_lch(double lightness, double chroma, double hue)
+{
+    double a = chroma * cos(2 * DEM_PI * hue), b = chroma * sin(2 * DEM_PI * hue);
+    double l = pow(lightness + 0.3963377774 * a + 0.2158037573 * b, 3);
+    double m = pow(lightness - 0.1055613458 * a - 0.0638541728 * b, 3);
+    double s = pow(lightness - 0.0894841775 * a - 1.2914855480 * b, 3);
+    return (dem_colour){(float)(4.0767416621 * l - 3.3077115913 * m + 0.2309699292 * s),
+                        (float)(-1.2684380046 * l + 2.6097574011 * m - 0.3413193965 * s),
+                        (float)(-0.0041960863 * l - 0.7034186147 * m + 1.7076147010 * s)};
+}
+
+// every ball takes, some times over, the hue it has the shortest seams with; those in sight are what counts
+static void choose_hues(int *hues, size_t count, const dem_ball *balls, const dem_ball_union *seams)
+{
+    size_t begin = 0, end = 0;
+    for (size_t turn = 0; turn < SWEEPS * count; turn++) {
+        size_t i = turn % count;
+        begin = i ? end : 0;
+        for (end = begin; end < seams->arc_count && seams->arcs[end].i == i; end++)
+            ;
+        double met[HUES] = {0};
+        for (size_t k = begin; k < end; k++) {
+            const dem_arc *arc = &seams->arcs[k];
+            if (hues[arc->j] >= 0)
+                met[hues[arc->j]] += balls[i].radius * arc->s * (arc->end - arc->begin);
+        }
+        int best = hues[i] >= 0 ? hues[i] : (int)(i % HUES);
+        for (int h = 0; h < HUES; h++)
+            if (met[h] < met[best])
+                best = h;
+        hues[i] = best;
+    }
+}
+
+static dem_status colour_balls(const dem_ball *balls, size_t count, dem_colour *colours, dem_error *error)
+{
+    // clay, sand, sage, sea, sky, heather
+    static const double turns[HUES] = {0.09, 0.20, 0.37, 0.52, 0.68, 0.90};
+    dem_ball_union seams;
+    DEM_TRY(dem_ball_union_compute(balls, count, true, &seams, error));
+    int *hues = dem_alloc(count, sizeof *hues);
+    if (hues) {
+        for (size_t i = 0; i < count; i++)
+            hues[i] = -1;
+        choose_hues(hues, count, balls, &seams);
+        for (size_t i = 0; i < count; i++)
+            colours[i] = from_lch(0.74, 0.07, turns[hues[i]]);
+    }
+    free(hues);
+    dem_ball_union_release(&seams);
+    return hues ? DEM_OK : dem_fail_memory(error);
+}
+
+dem_status dem_picture_render(const dem_ctx *ctx, const dem_mesh *mesh, const dem_ball *balls, size_t count, int width,
+                              int height, dem_image *image, dem_view *left, dem_error *error)
+{
+    bool pair = mesh->triangle_count > 0;
+    *image = (dem_image){0};
+    if (count == 0)
+        return dem_fail(error, DEM_USAGE, "there are no spheres to draw");
+    dem_colour *colours = dem_alloc(count, sizeof *colours);
+    if (!colours)
+        return dem_fail_memory(error);
+    dem_render_shape shapes[2] = {{.balls = balls, .ball_count = count, .ball_colours = colours}, {.mesh = mesh}};
+    dem_render_body bodies[2] = {{.shape = 0, .orientation = {1, 0, 0, 0}, .scale = 1},
+                                 {.shape = 1, .orientation = {1, 0, 0, 0}, .scale = 1, .colour = STONE}};
+    dem_render_scene scene = {shapes, pair ? 2 : 1, bodies, pair ? 2 : 1};
+    dem_camera camera = choose_camera(pair ? surface_spread(mesh) : balls_spread(balls, count));
+    // half of the picture holds both in one place; then they move apart by its breadth
+    dem_view view = dem_view_fit(&scene, &camera, pair ? width / 2 : width, height);
+    if (left)
+        *left = view;
+    if (pair) {
+        double half = view.width * view.pixel / 2;
+        bodies[0].position = v3_scale(view.right, half);
+        bodies[1].position = v3_scale(view.right, -half);
+        view.width = width;
+        view.radius += half;
+    }
+    dem_status status = colour_balls(balls, count, colours, error);
+    if (status == DEM_OK)
+        status = dem_render(ctx, &scene, &view, image, error);
+    free(colours);
+    return status;
+}
+
+dem_status dem_picture_draw(const dem_ctx *ctx, const dem_mesh *mesh, const dem_ball *balls, size_t count,
+                            dem_buffer *out, dem_error *error)
+{
+    dem_image image;
+    DEM_TRY(dem_picture_render(ctx, mesh, balls, count, WIDTH, HEIGHT, &image, NULL, error));
+    dem_status status = dem_png_encode(&image, out, error);
+    dem_image_free(&image);
+    return status;
+}
+
+dem_status dem_picture_clump(const dem_ctx *ctx, const dem_mesh *mesh, const dem_ball *balls, size_t count,
+                             const char *path, dem_error *error)
+{
+    dem_buffer png = {0};
+    dem_status status = dem_picture_draw(ctx, mesh, balls, count, &png, error);
+    if (status == DEM_OK)
+        return dem_file_write_buffer(path, &png, error);
+    dem_buffer_release(&png);
+    return status;
+}

@@ -1,0 +1,17 @@
+/// The picture of a mesh and its clump, in memory.
+#ifndef DEM_OUT_PICTURE_H
+#define DEM_OUT_PICTURE_H
+
+#include "dem/picture.h"
+#include "out/render.h"
+
+/// Draws the mesh in the left half and the clump in the right one; a mesh without triangles: the clump alone.
+/// `view` (may be NULL) receives that of the left half, as if it were a picture of its own.
+dem_status dem_picture_render(const dem_ctx *ctx, const dem_mesh *mesh, const dem_ball *balls, size_t count, int width,
+                              int height, dem_image *image, dem_view *view, dem_error *error);
+
+/// Appends the PNG file of dem_picture_clump.
+dem_status dem_picture_draw(const dem_ctx *ctx, const dem_mesh *mesh, const dem_ball *balls, size_t count,
+                            dem_buffer *out, dem_error *error);
+
+#endif

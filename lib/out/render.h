@@ -1,0 +1,67 @@
+/// Renders placed meshes and clumps on a white ground, in soft light, by rays on the processor.
+#ifndef DEM_OUT_RENDER_H
+#define DEM_OUT_RENDER_H
+
+#include "dem/clump.h"
+#include "dem/mesh.h"
+#include "out/png.h"
+#include "math/vec.h"
+
+/// Linear light reflected, 0..1 [-]
+typedef struct dem_colour {
+    float r, g, b;
+} dem_colour;
+
+/// A mesh or balls; many bodies may share one shape. Everything is borrowed.
+typedef struct dem_render_shape {
+    const dem_mesh *mesh;           ///< NULL: balls
+    const dem_ball *balls;
+    size_t ball_count;
+    const dem_colour *ball_colours; ///< one each; NULL: all in the body's colour
+} dem_render_shape;
+
+typedef struct dem_render_body {
+    uint32_t shape;
+    dem_vec3 position;    ///< [m]
+    dem_quat orientation;
+    double scale;         ///< [-]
+    dem_colour colour;
+} dem_render_body;
+
+typedef struct dem_render_scene {
+    const dem_render_shape *shapes;
+    size_t shape_count;
+    const dem_render_body *bodies;
+    size_t body_count;
+} dem_render_scene;
+
+/// A camera that finds its own place: everything is in the picture, `margin` of its smaller side left free.
+typedef struct dem_camera {
+    dem_vec3 forward;       ///< direction of sight
+    dem_vec3 up;            ///< normal of the ground, upwards in the picture; not parallel to `forward`
+    double field_deg;       ///< vertical angle of view; 0: parallel rays
+    double margin;          ///< [-]
+} dem_camera;
+
+/// A camera in its place. Pixel (0, 0) is the upper left one, its centre at (0.5, 0.5).
+typedef struct dem_view {
+    dem_vec3 centre;              ///< in the middle of the picture [m]
+    dem_vec3 right, up, forward;  ///< orthonormal
+    dem_vec3 ground_up;           ///< normal of the ground
+    double ground;                ///< height of the ground: its points x have x . ground_up = ground [m]
+    double pixel;                 ///< breadth of a pixel at the centre [m]
+    double distance;              ///< of the eye from the centre [m]; 0: parallel rays
+    double radius;                ///< of a ball about the centre that holds everything [m]
+    int width, height;
+} dem_view;
+
+dem_view dem_view_fit(const dem_render_scene *scene, const dem_camera *camera, int width, int height);
+/// Where a point is in the picture [pixels].
+void dem_view_project(const dem_view *view, dem_vec3 point, double *x, double *y);
+
+/// Draws the scene. Same picture for any number of threads. Errors: DEM_UNAVAILABLE without Embree,
+/// DEM_INTERRUPTED, DEM_NO_MEMORY.
+dem_status dem_render(const dem_ctx *ctx, const dem_render_scene *scene, const dem_view *view, dem_image *image,
+                      dem_error *error);
+
+#endif
