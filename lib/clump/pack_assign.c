@@ -1,0 +1,183 @@
+#include <string.h>
+
+#include "base/status.h"
+#include "clump/packing.h"
+
+// Near lists take in balls this much farther than needed, so that they hold while balls move [d_eq].
+static const double slack = 0.03;
+
+void dem_pack_set_columns(dem_packing *p, const dem_pack_state *state)
+{
+    dem_ball_columns *c = &p->columns;
+    c->count = state->count;
+    c->padded = (state->count + DEM_LANES - 1) / DEM_LANES * DEM_LANES;
+    for (size_t i = 0; i < state->count; i++) {
+        c->x[i] = (float)state->balls[i].centre.x;
+        c->y[i] = (float)state->balls[i].centre.y;
+        c->z[i] = (float)state->balls[i].centre.z;
+        c->r[i] = (float)state->balls[i].radius;
+    }
+    for (size_t i = state->count; i < c->padded; i++) {
+        c->x[i] = c->y[i] = c->z[i] = 1e9f;
+        c->r[i] = 0;
+    }
+}
+
+// Which balls can be nearest or second nearest to a sample of a block of radius R about b: with t_i the distance of b
+// to ball i, those with t_i <= (second smallest t) + 2 R. A ball that moves by d changes t by at most d.
+static void list_near(dem_packing *p, dem_pack_chunk *chunk)
+{
+    chunk->near_count = 0;
+    for (size_t b = chunk->begin; b < chunk->end && !chunk->failed; b++) {
+        float smallest[2];
+        const dem_block_bound *bound = &p->samples.bounds[b];
+        p->kernels->distances(&p->columns, bound, chunk->distance, smallest);
+        float second = p->columns.count > 1 ? smallest[1] : smallest[0];
+        float limit = second + 2 * bound->radius + (float)p->near_slack;
+        p->near_begin[b] = chunk->near_count;
+        for (size_t i = 0; i < p->columns.count; i++) {
+            if (chunk->distance[i] > limit)
+                continue;
+            if (!dem_grow(&chunk->near, &chunk->near_capacity, chunk->near_count, sizeof *chunk->near)) {
+                chunk->failed = true;
+                return;
+            }
+            chunk->near[chunk->near_count++] = (uint32_t)i;
+        }
+        p->near_size[b] = (uint32_t)(chunk->near_count - p->near_begin[b]);
+    }
+}
+
+// those of the near list that can be nearest right now; `places` smallest distances are kept in reach
+static size_t cull_near(const dem_packing *p, dem_pack_chunk *chunk, size_t block, int places, uint32_t *list)
+{
+    const dem_block_bound *bound = &p->samples.bounds[block];
+    const uint32_t *near = chunk->near + p->near_begin[block];
+    const dem_ball_columns *c = &p->columns;
+    size_t size = p->near_size[block], count = 0;
+    float first = 1e9f, second = 1e9f;
+    for (size_t k = 0; k < size; k++) {
+        uint32_t i = near[k];
+        float dx = c->x[i] - bound->x, dy = c->y[i] - bound->y, dz = c->z[i] - bound->z;
+        float d = sqrtf(dx * dx + dy * dy + dz * dz) - c->r[i];
+        chunk->distance[k] = d;
+        float other = d < first ? first : d;
+        first = d < first ? d : first;
+        second = other < second ? other : second;
+    }
+    float limit = (places == 2 && size > 1 ? second : first) + 2 * bound->radius;
+    for (size_t k = 0; k < size; k++)
+        if (chunk->distance[k] <= limit)
+            list[count++] = near[k];
+    return count;
+}
+
+static dem_charge charge_of(const dem_packing *p, size_t block)
+{
+    dem_charge charge = p->charge;
+    charge.interior = block >= p->samples.surface_blocks;
+    return charge;
+}
+
+static void assign_chunk(dem_packing *p, dem_pack_chunk *chunk, dem_pack_state *state)
+{
+    for (size_t b = chunk->begin; b < chunk->end; b++) {
+        float *f = state->f + b * DEM_BLOCK;
+        size_t count = cull_near(p, chunk, b, 1, chunk->touched);
+        dem_charge charge = charge_of(p, b);
+        p->kernels->nearest(&p->samples.blocks[b], &p->columns, chunk->touched, count, f, state->owner + b * DEM_BLOCK);
+        state->block_energy[b] = p->kernels->energy(&p->samples.blocks[b], f, &charge);
+    }
+}
+
+static void sum_energy(const dem_packing *p, dem_pack_state *state)
+{
+    state->energy = 0;
+    for (size_t b = 0; b < p->samples.block_count; b++)
+        state->energy += state->block_energy[b];
+}
+
+static bool any_failed(const dem_packing *p)
+{
+    for (int k = 0; k < DEM_CHUNKS; k++)
+        if (p->chunks[k].failed)
+            return true;
+    return false;
+}
+
+static dem_status assign(dem_packing *p, dem_pack_state *state, bool make_lists, dem_error *error)
+{
+    DEM_ASSERT(state->count > 0);
+    dem_pack_set_columns(p, state);
+    if (make_lists) {
+        p->near_slack = slack;
+        memcpy(p->near_at, state->balls, state->count * sizeof *p->near_at);
+    }
+#pragma omp parallel for num_threads(p->threads) schedule(dynamic, 1) if (p->threads > 1)
+    for (int k = 0; k < DEM_CHUNKS; k++) {
+        if (make_lists)
+            list_near(p, &p->chunks[k]);
+        if (!p->chunks[k].failed)
+            assign_chunk(p, &p->chunks[k], state);
+    }
+    if (any_failed(p))
+        return dem_fail_memory(error);
+    sum_energy(p, state);
+    return DEM_OK;
+}
+
+dem_status dem_pack_assign(dem_packing *p, dem_pack_state *state, dem_error *error)
+{
+    return assign(p, state, true, error);
+}
+
+dem_status dem_pack_assign_moved(dem_packing *p, dem_pack_state *state, dem_error *error)
+{
+    double farthest = 0;
+    for (size_t i = 0; i < state->count; i++) {
+        const dem_ball *now = &state->balls[i], *then = &p->near_at[i];
+        farthest = fmax(farthest, v3_distance(now->centre, then->centre) + fabs(now->radius - then->radius));
+    }
+    return assign(p, state, 2 * farthest > p->near_slack * (1 - 1e-3), error);
+}
+
+// what the samples of a chunk would be charged more without their nearest ball
+static void charge_removal(dem_packing *p, dem_pack_chunk *chunk, dem_pack_state *state)
+{
+    for (size_t b = chunk->begin; b < chunk->end; b++) {
+        const dem_sample_block *block = &p->samples.blocks[b];
+        float *f = state->f + b * DEM_BLOCK, *rise = p->rise + b * DEM_BLOCK, now[DEM_BLOCK], then[DEM_BLOCK];
+        size_t count = cull_near(p, chunk, b, 2, chunk->touched);
+        dem_charge charge = charge_of(p, b);
+        p->kernels->nearest_two(block, &p->columns, chunk->touched, count, f, state->owner + b * DEM_BLOCK, then);
+        p->kernels->charges(block, then, &charge, rise);
+        p->kernels->charges(block, f, &charge, now);
+        for (int l = 0; l < DEM_BLOCK; l++)
+            rise[l] -= now[l];
+    }
+}
+
+dem_status dem_pack_removal_costs(dem_packing *p, dem_pack_state *state, dem_error *error)
+{
+    DEM_TRY(assign(p, state, true, error));
+#pragma omp parallel for num_threads(p->threads) schedule(dynamic, 1) if (p->threads > 1)
+    for (int k = 0; k < DEM_CHUNKS; k++)
+        charge_removal(p, &p->chunks[k], state);
+    for (size_t i = 0; i < state->count; i++)
+        p->cost[i] = 0;
+    for (size_t i = 0; i < p->samples.block_count * DEM_BLOCK; i++)
+        p->cost[state->owner[i]] += p->rise[i];
+    return DEM_OK;
+}
+
+double dem_pack_gap_estimate(const dem_packing *p, const dem_pack_state *state)
+{
+    double difference = 0, outside = 0;
+    for (size_t b = 0; b < p->samples.surface_blocks; b++)
+        for (int l = 0; l < DEM_BLOCK; l++) {
+            double f = state->f[b * DEM_BLOCK + (size_t)l], w = p->samples.blocks[b].weight[l];
+            difference += w * fabs(f);
+            outside += f < 0 ? -w * f : 0;
+        }
+    return difference / (p->grain.moments.volume + outside);
+}

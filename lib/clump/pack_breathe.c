@@ -1,0 +1,146 @@
+#include "clump/pack_breathe.h"
+
+#include "base/status.h"
+#include "clump/pack_connect.h"
+#include "clump/pack_prune.h"
+
+enum { TRIES = 12 };
+
+static const double largest_share = 0.05;  // of the balls exchanged in one breath, on average; twice that at most
+static const double hopeless = 1.05;       // energy after a short relaxation, against the one to beat
+static const double jitter = 0.6;          // of the removal costs
+
+// a surface block drawn by its energy
+static size_t draw_block(dem_packing *p, const dem_pack_state *state)
+{
+    double total = 0;
+    for (size_t b = 0; b < p->samples.surface_blocks; b++)
+        total += state->block_energy[b];
+    double mark = random_uniform(&p->random) * total;
+    for (size_t b = 0; b < p->samples.surface_blocks; b++) {
+        mark -= state->block_energy[b];
+        if (mark < 0)
+            return b;
+    }
+    return p->samples.surface_blocks - 1;
+}
+
+static bool out_of_reach(const dem_block_bound *bound, dem_ball ball, double farther)
+{
+    double d = v3_distance(v3((double)bound->x, (double)bound->y, (double)bound->z), ball.centre);
+    return d > ball.radius + (double)bound->radius + farther;
+}
+
+static dem_charge block_charge(const dem_packing *p, size_t block)
+{
+    dem_charge charge = p->charge;
+    charge.interior = block >= p->samples.surface_blocks;
+    return charge;
+}
+
+// how far a sample may lie outside the union for a ball that does not reach its block to matter [d_eq]
+static const double farthest_sample = 0.3;
+
+// by how much the energy would fall with one more ball
+static double insertion_gain(const dem_packing *p, const dem_pack_state *state, dem_ball ball)
+{
+    double gain = 0;
+    float columns[4] = {(float)ball.centre.x, (float)ball.centre.y, (float)ball.centre.z, (float)ball.radius};
+    for (size_t b = 0; b < p->samples.block_count; b++) {
+        float f[DEM_BLOCK];
+        if (out_of_reach(&p->samples.bounds[b], ball, 0.08))
+            continue;
+        dem_charge charge = block_charge(p, b);
+        if (p->kernels->with_ball(&p->samples.blocks[b], columns, state->f + b * DEM_BLOCK, f))
+            gain += state->block_energy[b] - (double)p->kernels->energy(&p->samples.blocks[b], f, &charge);
+    }
+    return gain;
+}
+
+static void take_in(dem_packing *p, dem_pack_state *state, dem_ball ball)
+{
+    float columns[4] = {(float)ball.centre.x, (float)ball.centre.y, (float)ball.centre.z, (float)ball.radius};
+    for (size_t b = 0; b < p->samples.block_count; b++) {
+        float f[DEM_BLOCK], *old = state->f + b * DEM_BLOCK;
+        if (out_of_reach(&p->samples.bounds[b], ball, farthest_sample) ||
+            !p->kernels->with_ball(&p->samples.blocks[b], columns, old, f))
+            continue;
+        for (int l = 0; l < DEM_BLOCK; l++)
+            if (f[l] < old[l]) {
+                old[l] = f[l];
+                state->owner[b * DEM_BLOCK + (size_t)l] = (int32_t)state->count;
+            }
+        dem_charge charge = block_charge(p, b);
+        double energy = (double)p->kernels->energy(&p->samples.blocks[b], f, &charge);
+        state->energy += energy - state->block_energy[b];
+        state->block_energy[b] = energy;
+    }
+    dem_pack_state_add(state, ball);
+}
+
+void dem_pack_insert(dem_packing *p, dem_pack_state *state, size_t count)
+{
+    for (size_t k = 0; k < count && state->count < state->capacity; k++) {
+        dem_ball best = {.radius = 0};
+        double most = 0;
+        for (int t = 0; t < TRIES; t++) {
+            size_t b = draw_block(p, state);
+            uint32_t first = p->candidates.at_block[b], number = p->candidates.at_block[b + 1] - first;
+            if (!number)
+                continue;
+            dem_ball ball = p->candidates.balls[first + random_below(&p->random, number)];
+            ball.radius += p->inflations[random_below(&p->random, p->inflation_count)];
+            double gain = insertion_gain(p, state, ball);
+            if (gain > most) {
+                most = gain;
+                best = ball;
+            }
+        }
+        if (best.radius > 0)
+            take_in(p, state, best);
+    }
+}
+
+// one breath, from `state` to `p->moved`
+static dem_status breathe(dem_packing *p, const dem_pack_state *state, bool *better, dem_error *error)
+{
+    dem_pack_state *moved = &p->moved;
+    const dem_relax_options brief = {8, 0.02, 2e-4}, briefer = {4, 0.02, 2e-4}, test = {6, 0.02, 2e-4}, full = {20, 0.02, 2e-4};
+    double u = random_uniform(&p->random), v = random_uniform(&p->random);
+    size_t target = state->count, count = 1 + (size_t)(u * v * 2 * largest_share * (double)target);
+    *better = false;
+    dem_pack_state_copy(p, state, moved);
+    dem_pack_insert(p, moved, count);
+    count = moved->count - target;
+    if (count == 0)
+        return DEM_OK;
+    DEM_TRY(dem_pack_relax(p, moved, brief, error));
+    size_t first = count > 3 ? count * 2 / 3 : count;
+    DEM_TRY(dem_pack_prune(p, moved, first, jitter, error));
+    if (count > first) {
+        DEM_TRY(dem_pack_relax(p, moved, briefer, error));
+        DEM_TRY(dem_pack_prune(p, moved, count - first, jitter, error));
+    }
+    DEM_TRY(dem_pack_relax(p, moved, test, error));
+    if (moved->energy > hopeless * state->energy)
+        return DEM_OK;
+    DEM_TRY(dem_pack_relax(p, moved, full, error));
+    *better = moved->energy < state->energy;
+    return DEM_OK;
+}
+
+dem_status dem_pack_breathe(dem_packing *p, dem_pack_state *state, int moves, dem_error *error)
+{
+    for (int k = 0; k < moves; k++) {
+        bool better;
+        DEM_TRY(breathe(p, state, &better, error));
+        if (better && p->connected)
+            better = dem_pack_links(p, p->moved.balls, p->moved.count, dem_pack_overlap, p->links) == 0;
+        if (!better)
+            continue;
+        dem_pack_state old = *state;
+        *state = p->moved;
+        p->moved = old;
+    }
+    return DEM_OK;
+}

@@ -1,0 +1,217 @@
+#include "clump/pack_candidates.h"
+
+#include <stdlib.h>
+
+enum { STACK = 128, SHRINKS = 12 };
+
+static const double largest_radius = 0.6;        // a little more than that of the sphere of equal volume [d_eq]
+static const double smallest_candidate = 0.01;   // [d_eq]
+
+// The ball of radius r touching p from inside has its centre at p - r n. It comes no deeper than `depth` at s when
+// |s - c| >= r - depth; with e = p - s that is r <= (e.e - depth^2) / (2 (n.e - depth)) where n.e > depth.
+static double shrink(double r, dem_vec3 p, dem_vec3 n, dem_vec3 a, dem_vec3 b, dem_vec3 c, double depth)
+{
+    for (int i = 0; i < SHRINKS; i++) {
+        dem_vec3 centre = v3_along(p, -r, n);
+        dem_vec3 s = dem_triangle_closest(centre, a, b, c);
+        double free = r * (1 - 1e-4) - depth;
+        if (free <= 0 || v3_norm2(v3_sub(s, centre)) >= free * free)
+            break;
+        dem_vec3 e = v3_sub(p, s);
+        double low = v3_dot(n, e) - depth;
+        if (low <= 1e-12)
+            break;
+        double next = fmax(0, v3_norm2(e) - depth * depth) / (2 * low);
+        if (next >= r * (1 - 1e-6))
+            break;
+        r = next;
+    }
+    return r;
+}
+
+// Shrinking ball (Ma, Bae & Choi 2012) in a single traversal: the balls are nested, so what one of them does not
+// reach none of the later ones does.
+double dem_medial_radius(const dem_tree *tree, dem_vec3 p, dem_vec3 n, double depth)
+{
+    double r = largest_radius;
+    uint32_t stack[STACK];
+    int top = 0;
+    stack[top++] = 0;
+    while (top) {
+        uint32_t at = stack[--top];
+        const dem_tree_node *node = &tree->nodes[at];
+        dem_vec3 centre = v3_along(p, -r, n);
+        if (box_distance2(&node->box, centre) >= r * r)
+            continue;
+        if (node->right) {
+            uint32_t left = at + 1, right = node->right;
+            bool left_first = box_distance2(&tree->nodes[left].box, centre) < box_distance2(&tree->nodes[right].box, centre);
+            stack[top++] = left_first ? right : left;
+            stack[top++] = left_first ? left : right;
+            continue;
+        }
+        for (uint32_t i = node->begin; i < node->end; i++) {
+            const uint32_t *t = tree->triangles + 3 * (size_t)tree->order[i];
+            r = shrink(r, p, n, tree->vertices[t[0]], tree->vertices[t[1]], tree->vertices[t[2]], depth);
+        }
+    }
+    return r;
+}
+
+typedef struct touching {
+    dem_vec3 point, normal;
+    double radius;
+    uint32_t block;
+} touching;
+
+static void shell_corners(const void *surface, size_t triangle, dem_vec3 corners[3])
+{
+    const dem_mesh *shell = surface;
+    for (size_t k = 0; k < 3; k++)
+        corners[k] = shell->vertices[shell->triangles[3 * triangle + k]];
+}
+
+static void keep_touching(void *user, size_t number, dem_vec3 point, dem_vec3 normal)
+{
+    ((touching *)user)[number] = (touching){.point = point, .normal = normal};
+}
+
+static double shell_area(const dem_mesh *shell)
+{
+    double area = 0;
+    for (size_t t = 0; t < shell->triangle_count; t++) {
+        dem_vec3 c[3];
+        shell_corners(shell, t, c);
+        area += v3_norm(v3_cross(v3_sub(c[1], c[0]), v3_sub(c[2], c[0]))) / 2;
+    }
+    return area;
+}
+
+static uint32_t nearest_block(const dem_samples *samples, dem_vec3 p)
+{
+    uint32_t best = 0;
+    float least = INFINITY, x = (float)p.x, y = (float)p.y, z = (float)p.z;
+    for (size_t b = 0; b < samples->surface_blocks; b++) {
+        float dx = samples->bounds[b].x - x, dy = samples->bounds[b].y - y, dz = samples->bounds[b].z - z;
+        float d = dx * dx + dy * dy + dz * dz;
+        if (d < least) {
+            least = d;
+            best = (uint32_t)b;
+        }
+    }
+    return best;
+}
+
+// counting sort by block
+static dem_status sort_by_block(const touching *points, size_t count, size_t blocks, dem_candidates *candidates,
+                                dem_error *error)
+{
+    candidates->balls = dem_alloc(count, sizeof *candidates->balls);
+    candidates->at_block = dem_alloc_zero(blocks + 2, sizeof *candidates->at_block);
+    if (!candidates->balls || !candidates->at_block)
+        return dem_fail_memory(error);
+    uint32_t *start = candidates->at_block;
+    for (size_t i = 0; i < count; i++)
+        if (points[i].radius > smallest_candidate)
+            start[points[i].block + 2]++;
+    for (size_t b = 2; b < blocks + 2; b++)
+        start[b] += start[b - 1];
+    for (size_t i = 0; i < count; i++)
+        if (points[i].radius > smallest_candidate)
+            candidates->balls[start[points[i].block + 1]++] =
+                (dem_ball){v3_along(points[i].point, -points[i].radius, points[i].normal), points[i].radius};
+    candidates->count = start[blocks];
+    return DEM_OK;
+}
+
+dem_status dem_candidates_build(const dem_pack_grain *grain, const dem_samples *samples, size_t count, int threads,
+                                dem_candidates *candidates, dem_error *error)
+{
+    *candidates = (dem_candidates){0};
+    const dem_mesh *shell = &grain->shell;
+    touching *points = dem_alloc_zero(count, sizeof *points);
+    if (!points)
+        return dem_fail_memory(error);
+    dem_surface_spread(shell_corners, shell, shell->triangle_count, shell_area(shell), count, keep_touching, points);
+#pragma omp parallel for num_threads(threads) schedule(dynamic, 64)
+    for (size_t i = 0; i < count; i++) {
+        points[i].radius = dem_medial_radius(&grain->tree, points[i].point, points[i].normal, 0);
+        points[i].block = nearest_block(samples, points[i].point);
+    }
+    dem_status status = sort_by_block(points, count, samples->surface_blocks, candidates, error);
+    free(points);
+    if (status != DEM_OK)
+        dem_candidates_release(candidates);
+    return status;
+}
+
+void dem_candidates_release(dem_candidates *candidates)
+{
+    free(candidates->balls);
+    free(candidates->at_block);
+    *candidates = (dem_candidates){0};
+}
+
+typedef struct offer {
+    int64_t gain;
+    dem_ball ball;
+} offer;
+
+// a heap whose first offer has the largest gain
+static void sink(offer *heap, size_t count, size_t at)
+{
+    offer moving = heap[at];
+    for (size_t child; (child = 2 * at + 1) < count; at = child) {
+        if (child + 1 < count && heap[child + 1].gain > heap[child].gain)
+            child++;
+        if (heap[child].gain <= moving.gain)
+            break;
+        heap[at] = heap[child];
+    }
+    heap[at] = moving;
+}
+
+// lazy greedy (Minoux 1978): a gain is only computed again when its offer comes to the top
+static size_t take_best(offer *heap, size_t count, dem_lattice *lattice, size_t most, double gap, dem_ball *chosen)
+{
+    size_t taken = 0;
+    int64_t left = (int64_t)dem_lattice_difference(lattice), enough = (int64_t)(gap * (double)lattice->inside_count);
+    for (size_t i = count / 2; i-- > 0;)
+        sink(heap, count, i);
+    while (taken < most && count > 0 && (gap <= 0 || left > enough)) {
+        int64_t gain = dem_lattice_gain(lattice, heap[0].ball);
+        if (gain < heap[0].gain) {
+            heap[0].gain = gain;
+            sink(heap, count, 0);
+            continue;
+        }
+        if (gain <= 0)
+            break;
+        dem_lattice_cover(lattice, heap[0].ball);
+        left -= gain;
+        chosen[taken++] = heap[0].ball;
+        heap[0] = heap[--count];
+        sink(heap, count, 0);
+    }
+    return taken;
+}
+
+dem_status dem_candidates_greedy(const dem_candidates *candidates, dem_lattice *lattice, const double *inflations,
+                                 size_t inflation_count, size_t most, double gap, int threads, dem_ball *chosen,
+                                 size_t *chosen_count, dem_error *error)
+{
+    size_t count = candidates->count * inflation_count;
+    offer *heap = dem_alloc(count, sizeof *heap);
+    if (!heap)
+        return dem_fail_memory(error);
+    dem_lattice_clear(lattice);
+#pragma omp parallel for num_threads(threads) schedule(dynamic, 64)
+    for (size_t i = 0; i < count; i++) {
+        dem_ball ball = candidates->balls[i / inflation_count];
+        ball.radius += inflations[i % inflation_count];
+        heap[i] = (offer){dem_lattice_gain(lattice, ball), ball};
+    }
+    *chosen_count = take_best(heap, count, lattice, most, gap, chosen);
+    free(heap);
+    return DEM_OK;
+}

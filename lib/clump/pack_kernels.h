@@ -1,0 +1,101 @@
+/// The packer's hot loops: plain C over fixed lanes, compiled once per instruction set (kernels.cmake). Every sum is
+/// kept in 16 explicit partial sums, so that all instruction sets give the same bits.
+#ifndef DEM_CLUMP_PACK_KERNELS_H
+#define DEM_CLUMP_PACK_KERNELS_H
+
+#include "clump/pack_samples.h"
+
+enum {
+    DEM_LANES = 16,     ///< partial sums of a reduction
+    DEM_EQUATION = 14,  ///< upper triangle of a symmetric 4x4 matrix, then a right-hand side of 4
+};
+
+/// Balls in columns, padded to full lanes by balls that are far away.
+typedef struct dem_ball_columns {
+    float *x, *y, *z, *r;
+    size_t count, padded;
+} dem_ball_columns;
+
+/// How the distance f of a sample to the union (negative: inside it) is charged.
+typedef struct dem_charge {
+    bool interior;         ///< of interior samples: the square of f > 0
+    bool linear;           ///< the power of |f| is 1; otherwise 1.25
+    float softening;       ///< added to f^2: (epsilon / 2)^2
+    float inside, outside; ///< weight of samples inside (protrusion) and outside (uncovered)
+} dem_charge;
+
+/// Partial sums of one ball's normal equations.
+typedef struct dem_equation_lanes {
+    float sum[DEM_EQUATION][DEM_LANES];
+} dem_equation_lanes;
+
+enum { DEM_LINE_LANES = 16 };  ///< neighbouring lines taken together
+
+/// Lines along one axis in strips of DEM_LINE_LANES, each with the places where they enter and leave the grain.
+typedef struct dem_line_field {
+    int axis;
+    float step, origin[2];   ///< as in dem_columns
+    int32_t row_count;
+    int32_t *first;          ///< [row_count] column of a row's first line
+    uint32_t *strip;         ///< [row_count + 1] index of a row's first strip
+    uint32_t *span;          ///< [strips + 1] index of a strip's first span
+    float (*spans)[2][DEM_LINE_LANES];  ///< enter and leave; a line with fewer spans than its strip has them far away
+} dem_line_field;
+
+/// Sums over the exposed ends of one ball's intervals. With s = +1 for an end outside the grain, -1 for one inside,
+/// and n the unit normal of the ball there.
+typedef struct dem_line_lanes {
+    float radial[DEM_LINE_LANES];     ///< s |n_w|
+    float across[2][DEM_LINE_LANES];  ///< s |n_w| n_u r and s |n_w| n_v r
+    float along[DEM_LINE_LANES];      ///< s n_w |n_w| r^2
+} dem_line_lanes;
+
+/// One share of the rows of a field.
+typedef struct dem_line_task {
+    const dem_line_field *field;
+    int32_t begin, end;      ///< rows
+    dem_line_lanes *lanes;   ///< [balls] added to; NULL: no gradient
+    struct dem_line_ball *active;  ///< [balls] work space
+    uint32_t *strip_balls;         ///< [balls] work space
+    float (*from)[DEM_LINE_LANES], (*to)[DEM_LINE_LANES];  ///< [balls] work space: the ends of their intervals
+    double covered, common;  ///< length of the lines inside the union, and inside both
+} dem_line_task;
+
+/// A ball as a row of lines sees it.
+typedef struct dem_line_ball {
+    float u, w, reach2, v;          ///< centre across and along, r^2 - v^2, offset of the row from the centre
+    int32_t first, last;            ///< strips of the row
+    uint32_t ball;
+} dem_line_ball;
+
+typedef struct dem_pack_kernels {
+    const char *name;
+    bool (*usable)(void);
+    /// Distance of the bound's centre to each ball (padded), and the two smallest.
+    void (*distances)(const dem_ball_columns *balls, const dem_block_bound *bound, float *distance, float smallest[2]);
+    /// Nearest of the listed balls for each sample: f and owner. The distances are those of `distances` for the list.
+    void (*nearest)(const dem_sample_block *block, const dem_ball_columns *balls, const uint32_t *list, size_t count,
+                    float *f, int32_t *owner);
+    /// The same and the second-nearest distance.
+    void (*nearest_two)(const dem_sample_block *block, const dem_ball_columns *balls, const uint32_t *list,
+                        size_t count, float *f, int32_t *owner, float *second);
+    /// What each sample is charged, and the sum.
+    void (*charges)(const dem_sample_block *block, const float *f, const dem_charge *charge, float *charges);
+    float (*energy)(const dem_sample_block *block, const float *f, const dem_charge *charge);
+    /// f with one more ball; false: it is nearest for no sample.
+    bool (*with_ball)(const dem_sample_block *block, const float ball[4], const float *f, float *with);
+    /// Adds the samples' Gauss-Newton terms to the equations of their owners, slot[owner].
+    void (*equations)(const dem_sample_block *block, const dem_ball_columns *balls, const float *f,
+                      const int32_t *owner, const dem_charge *charge, const uint32_t *owners, size_t owner_count,
+                      dem_equation_lanes *const *slots);
+    void (*lines)(const dem_ball_columns *balls, dem_line_task *task);
+} dem_pack_kernels;
+
+/// The best set this machine can run, or the named one (NULL: none such, or not usable here).
+const dem_pack_kernels *dem_pack_kernels_choose(const char *name);
+/// All sets built in, best first.
+const dem_pack_kernels *const *dem_pack_kernels_all(size_t *count);
+
+extern const dem_pack_kernels dem_pack_kernels_plain, dem_pack_kernels_v3, dem_pack_kernels_v4;
+
+#endif

@@ -1,0 +1,33 @@
+/// The true symmetric difference of grain and union by integrals along lines on three axes, with its gradient.
+#ifndef DEM_CLUMP_PACK_LINES_H
+#define DEM_CLUMP_PACK_LINES_H
+
+#include "clump/pack_kernels.h"
+
+enum { DEM_LINE_TASKS = 12 };
+
+typedef struct dem_lines {
+    dem_line_field fields[3];
+    double grain_length[3];      ///< of the lines inside the grain
+    dem_line_task tasks[DEM_LINE_TASKS];
+    dem_arena arena;
+    const dem_pack_kernels *kernels;
+    size_t capacity;             ///< most balls
+    int threads;
+} dem_lines;
+
+typedef struct dem_line_volumes {
+    double grain, covered, common;   ///< volumes as the lines see them
+    double difference;               ///< symmetric difference
+    double gap;                      ///< 1 - intersection / union
+} dem_line_volumes;
+
+/// `step` between lines [d_eq].
+dem_status dem_lines_build(const dem_pack_grain *grain, const dem_pack_kernels *kernels, double step, size_t capacity,
+                           int threads, dem_lines *lines, dem_error *error);
+void dem_lines_release(dem_lines *lines);
+
+/// `gradient` of the symmetric difference to (x, y, z, r) of each ball; NULL: not wanted.
+dem_line_volumes dem_lines_measure(dem_lines *lines, const dem_ball_columns *balls, double (*gradient)[4]);
+
+#endif

@@ -1,0 +1,117 @@
+#include <stdlib.h>
+
+#include "base/status.h"
+#include "clump/pack_connect.h"
+
+// Samples: at least 100 per sphere or the spheres fit the samples instead of the surface; twice as many spheres as
+// asked for are under way at first.
+enum { FEWEST_SAMPLES = 8192, MOST_SAMPLES = 65536, BASE_SAMPLES = 4096, SAMPLES_PER_SPHERE = 100 };
+enum { INTERIOR_SAMPLES = 4096 };
+enum { FEWEST_POINTS = 8000, POINTS_PER_SPHERE = 150 };    // of the lattice
+enum { FEWEST_CANDIDATES = 3000, CANDIDATES_PER_SPHERE = 3 };
+
+static const double softening = 0.0015;  // below this depth a sample's charge turns from |f|^p to f^2 [d_eq]
+
+static const dem_pack_effort efforts[] = {
+    [DEM_EFFORT_FAST] = {.prune_share = 0.06, .prune_iterations = 6, .breaths = 0},
+    [DEM_EFFORT_DEFAULT] = {.prune_share = 0.03, .prune_iterations = 8, .breaths = 60},
+    [DEM_EFFORT_BEST] = {.prune_share = 0.03, .prune_iterations = 8, .breaths = 1000},
+};
+
+static size_t at_least(size_t a, size_t b)
+{
+    return a > b ? a : b;
+}
+
+// Which sizes the candidates come in: the medial balls, and larger ones that stick out a little [d_eq].
+static void set_inflations(dem_packing *p)
+{
+    static const double few[4] = {0, 0.01, 0.03, 0.06}, some[4] = {0, 0.006, 0.015, 0.03}, many[3] = {0, 0.003, 0.008};
+    size_t n = p->options->spheres;
+    p->inflation_count = n > 150 ? 3 : 4;
+    for (size_t i = 0; i < p->inflation_count; i++)
+        p->inflations[i] = n < 30 ? few[i] : n > 150 ? many[i] : some[i];
+}
+
+static void split_chunks(dem_packing *p)
+{
+    for (size_t k = 0; k < DEM_CHUNKS; k++) {
+        p->chunks[k].begin = p->samples.block_count * k / DEM_CHUNKS;
+        p->chunks[k].end = p->samples.block_count * (k + 1) / DEM_CHUNKS;
+    }
+}
+
+static dem_status take_work_space(dem_packing *p, dem_error *error)
+{
+    size_t n = p->capacity, padded = (n + DEM_LANES - 1) / DEM_LANES * DEM_LANES, blocks = p->samples.block_count;
+    float **columns[4] = {&p->columns.x, &p->columns.y, &p->columns.z, &p->columns.r};
+    for (int k = 0; k < 4; k++)
+        *columns[k] = dem_arena_take(&p->arena, padded, sizeof(float));
+    for (int k = 0; k < DEM_CHUNKS; k++) {
+        dem_pack_chunk *chunk = &p->chunks[k];
+        chunk->distance = dem_arena_take(&p->arena, padded, sizeof *chunk->distance);
+        chunk->slot = dem_arena_take(&p->arena, n, sizeof *chunk->slot);
+        chunk->touched = dem_arena_take(&p->arena, n, sizeof *chunk->touched);
+        for (size_t i = 0; chunk->slot && i < n; i++)
+            chunk->slot[i] = -1;
+    }
+    p->near_begin = dem_arena_take(&p->arena, blocks, sizeof *p->near_begin);
+    p->near_size = dem_arena_take(&p->arena, blocks, sizeof *p->near_size);
+    p->near_at = dem_arena_take(&p->arena, n, sizeof *p->near_at);
+    p->links = dem_arena_take(&p->arena, n, sizeof *p->links);
+    p->link_gap = dem_arena_take(&p->arena, n, sizeof *p->link_gap);
+    p->link_nearest = dem_arena_take(&p->arena, n, sizeof *p->link_nearest);
+    p->equations = dem_arena_take(&p->arena, n, sizeof *p->equations);
+    p->factor = dem_arena_take(&p->arena, n, sizeof *p->factor);
+    p->cost = dem_arena_take(&p->arena, n, sizeof *p->cost);
+    p->rise = dem_arena_take(&p->arena, blocks * DEM_BLOCK, sizeof *p->rise);
+    p->order = dem_arena_take(&p->arena, n, sizeof *p->order);
+    if (p->arena.failed)
+        return dem_fail_memory(error);
+    DEM_TRY(dem_pack_state_init(p, &p->trial, error));
+    return dem_pack_state_init(p, &p->moved, error);
+}
+
+dem_status dem_packing_open(const dem_ctx *ctx, const dem_mesh *mesh, const dem_pack_options *options,
+                            const dem_pack_kernels *kernels, dem_packing *p, dem_error *error)
+{
+    size_t n = options->spheres;
+    *p = (dem_packing){.ctx = ctx, .options = options, .threads = dem_threads(ctx),
+                       .kernels = kernels ? kernels : dem_pack_kernels_choose(NULL),
+                       .random = random_stream(options->seed, 0), .connected = true, .effort = efforts[options->effort], .stiffness = 0.5,
+                       .charge = {.softening = (float)(softening * softening / 4), .inside = 1, .outside = 1}};
+    size_t surface = at_least(FEWEST_SAMPLES, BASE_SAMPLES + SAMPLES_PER_SPHERE * n);
+    if (surface > MOST_SAMPLES)
+        surface = MOST_SAMPLES;
+    p->capacity = 2 * n + 64;
+    dem_status status = dem_pack_grain_open(mesh, &p->grain, error);
+    if (status == DEM_OK)
+        status = dem_lattice_build(&p->grain, at_least(FEWEST_POINTS, POINTS_PER_SPHERE * n), &p->lattice, error);
+    if (status == DEM_OK)
+        status = dem_samples_build(&p->grain, &p->lattice, surface, INTERIOR_SAMPLES, &p->samples, error);
+    if (status == DEM_OK)
+        status = dem_candidates_build(&p->grain, &p->samples, at_least(FEWEST_CANDIDATES, CANDIDATES_PER_SPHERE * n),
+                                      p->threads, &p->candidates, error);
+    if (status == DEM_OK) {
+        split_chunks(p);
+        set_inflations(p);
+        status = take_work_space(p, error);
+    }
+    if (status != DEM_OK)
+        dem_packing_close(p);
+    return status;
+}
+
+void dem_packing_close(dem_packing *p)
+{
+    for (int k = 0; k < DEM_CHUNKS; k++) {
+        free(p->chunks[k].near);
+        free(p->chunks[k].lanes);
+    }
+    dem_arena_release(&p->arena);
+    dem_candidates_release(&p->candidates);
+    dem_samples_release(&p->samples);
+    dem_lattice_release(&p->lattice);
+    dem_pack_grain_close(&p->grain);
+    *p = (dem_packing){0};
+}
