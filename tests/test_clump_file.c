@@ -144,6 +144,8 @@ static void a_bad_value_is_refused_by_its_place(void **state)
                          "\"spheres\": [[0, 0, 0, -1]]}"},
         {"spheres[0]: ", "{\"schema\": \"dem-clump/1\", \"density\": 1, \"mass\": 1, \"inertia\": [1, 1, 1], "
                          "\"spheres\": [7]}"},
+        {"spheres[0]: ", "{\"schema\": \"dem-clump/1\", \"density\": 1, \"mass\": 1, \"inertia\": [1, 1, 1], "
+                         "\"spheres\": [[0, 0, 0, 1, 5]]}"},
         {"name: ", WITH("\"name\": 7")},
         {"volume: ", WITH("\"volume\": -1")},
         {"volume: ", WITH("\"volume\": [1]")},
@@ -170,6 +172,7 @@ static void a_bad_value_is_refused_by_its_place(void **state)
         {"surface.vertices[0]: ", WITH("\"surface\": {\"vertices\": [[1, 2]], \"triangles\": []}")},
         {"surface.triangles[0]: ", WITH("\"surface\": {\"vertices\": [[0,0,0]], \"triangles\": [[0, 0, 1]]}")},
         {"surface.triangles[0]: ", WITH("\"surface\": {\"vertices\": [[0,0,0]], \"triangles\": [[0, 0, -1]]}")},
+        {"surface.triangles[0]: ", WITH("\"surface\": {\"vertices\": [[0,0,0]], \"triangles\": [[0, 0, 4294967296]]}")},
         {"surface.triangles[0]: ", WITH("\"surface\": {\"vertices\": [[0,0,0]], \"triangles\": [[0, 0]]}")},
     };
     for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {

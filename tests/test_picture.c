@@ -167,38 +167,74 @@ static void the_picture_is_the_same_at_every_scale_and_place(void **state)
     dem_mesh_free(&mesh);
 }
 
+// widens the box of what is seen, in pixels
+static void see(const dem_view *view, dem_vec3 x, double radius, double low[2], double high[2])
+{
+    double at[2], r = radius / view->pixel;
+    dem_view_project(view, x, &at[0], &at[1]);
+    for (int k = 0; k < 2; k++) {
+        low[k] = fmin(low[k], at[k] - r);
+        high[k] = fmax(high[k], at[k] + r);
+    }
+}
+
 static void everything_is_in_the_picture_up_to_its_margin(void **state)
 {
     (void)state;
     dem_mesh mesh = shape_grain(6);
     dem_render_shape shapes[] = {{.mesh = &mesh}, {.balls = BALLS, .ball_count = BALL_COUNT}};
-    dem_render_body bodies[] = {{.shape = 0, .position = {3, 0, 0}, .orientation = {0.8, 0.6, 0, 0}, .scale = 2},
-                                {.shape = 1, .position = {-3, 1, 5}, .orientation = {0.6, 0, 0, 0.8}, .scale = 0.5}};
-    dem_render_scene scene = {shapes, 2, bodies, 2};
-    for (int perspective = 0; perspective < 2; perspective++) {
+    // a clump on either side; a mesh in the middle, or large enough to be all that counts
+    dem_render_body bodies[] = {{.shape = 0, .position = {0, 0, 0}, .orientation = {0.8, 0.6, 0, 0}, .scale = 1},
+                                {.shape = 1, .position = {-3, 1, 5}, .orientation = {0.6, 0, 0, 0.8}, .scale = 0.5},
+                                {.shape = 1, .position = {3, -1, -5}, .orientation = {0.6, 0, 0.8, 0}, .scale = 1.5}};
+    dem_render_scene scene = {shapes, 2, bodies, 3};
+    for (int turn = 0; turn < 4; turn++) {
+        bool perspective = turn & 1;
+        bodies[0].scale = turn & 2 ? 20 : 1;
         dem_camera camera = {{1, 2, -0.5}, {0, 0, 1}, perspective ? 30 : 0, 0.1};
         dem_view view = dem_view_fit(&scene, &camera, 300, 100);
-        double low[2] = {INFINITY, INFINITY}, high[2] = {-INFINITY, -INFINITY};
+        double low[2] = {INFINITY, INFINITY}, high[2] = {-INFINITY, -INFINITY}, ground = INFINITY;
         for (size_t i = 0; i < mesh.vertex_count; i++) {
-            double at[2];
-            dem_vec3 x = v3_add(bodies[0].position, v3_scale(quat_rotate(bodies[0].orientation, mesh.vertices[i]), 2));
-            dem_view_project(&view, x, &at[0], &at[1]);
-            for (int k = 0; k < 2; k++)
-                low[k] = fmin(low[k], at[k]), high[k] = fmax(high[k], at[k]);
-            check(v3_dot(x, view.ground_up) >= view.ground - 1e-12);
+            dem_vec3 x = v3_scale(quat_rotate(bodies[0].orientation, mesh.vertices[i]), bodies[0].scale);
+            see(&view, x, 0, low, high);
+            ground = fmin(ground, x.z);
         }
-        for (int i = 0; i < BALL_COUNT; i++) {
-            double at[2], r = 0.5 * BALLS[i].radius / view.pixel;
-            dem_vec3 x = v3_add(bodies[1].position, v3_scale(quat_rotate(bodies[1].orientation, BALLS[i].centre), 0.5));
-            dem_view_project(&view, x, &at[0], &at[1]);
-            for (int k = 0; k < 2; k++)
-                low[k] = fmin(low[k], at[k] - r), high[k] = fmax(high[k], at[k] + r);
+        for (int i = 0; i < 2 * BALL_COUNT; i++) {
+            const dem_render_body *b = &bodies[1 + i % 2];
+            dem_vec3 x = v3_along(b->position, b->scale, quat_rotate(b->orientation, BALLS[i / 2].centre));
+            see(&view, x, b->scale * BALLS[i / 2].radius, low, high);
+            ground = fmin(ground, x.z - b->scale * BALLS[i / 2].radius);
         }
-        check(low[0] >= 10 - 1e-9 && high[0] <= 290 + 1e-9 && high[1] <= 90 + 1e-9 && low[1] >= 10 - 1e-9);
-        // parallel rays: the higher of both extents fills the picture
-        if (!perspective)
-            check(fabs(low[1] - 10) < 1e-9 || fabs(low[0] - 10) < 1e-9);
+        check_close(view.ground, ground, 1e-14);
+        double left = low[0] - 10, right = 290 - high[0], above = low[1] - 10, below = 90 - high[1];
+        if (perspective) {
+            check(left >= 0 && right >= 0 && above >= 0 && below >= 0);
+        } else {  // in the middle, and as large as can be
+            check_near(left, right, 1e-9);
+            check_near(above, below, 1e-9);
+            check_near(fmin(left, above), 0, 1e-9);
+        }
     }
+    dem_mesh_free(&mesh);
+}
+
+static void outlines_are_smooth(void **state)
+{
+    (void)state;
+    dem_mesh mesh = shape_grain(10);
+    dem_image image = drawn(&mesh, BALLS, 1, NULL);
+    int between = 0, rows = 0;
+    for (int y = 0; y < HEIGHT; y++)
+        for (int x = 1; x < WIDTH / 2; x++)
+            if (shows_body(&image, x, y)) {
+                // the first pixel of the body in its row is partly ground
+                between += abs(*pixel_at(&image, x, y) - *pixel_at(&image, x + 1, y)) > 8;
+                rows++;
+                break;
+            }
+    check(rows > HEIGHT / 2);
+    check(between > rows / 2);
+    dem_image_free(&image);
     dem_mesh_free(&mesh);
 }
 
@@ -298,6 +334,7 @@ int main(void)
         cmocka_unit_test(the_picture_is_the_same_for_any_number_of_threads),
         cmocka_unit_test(the_picture_is_the_same_at_every_scale_and_place),
         cmocka_unit_test(everything_is_in_the_picture_up_to_its_margin),
+        cmocka_unit_test(outlines_are_smooth),
         cmocka_unit_test(smooth_faces_are_shaded_smooth_and_edges_stay),
         cmocka_unit_test(thousands_of_bodies_share_a_shape),
         cmocka_unit_test(drawing_can_be_interrupted),

@@ -16,7 +16,7 @@ static void put_title(dem_buffer *out, const dem_clump_def *clump)
     dem_buffer_text(out, "# ");
     for (const char *p = clump->name; *p; p++)
         dem_buffer_bytes(out, (unsigned char)*p < ' ' ? " " : p, 1);
-    dem_buffer_print(out, ": %zu spheres of dem-clump " DEM_VERSION "\n", clump->ball_count);
+    dem_buffer_print(out, "%s%zu spheres of dem-clump " DEM_VERSION "\n", *clump->name ? ": " : "", clump->ball_count);
 }
 
 static void put_head(dem_buffer *out, const dem_clump_def *clump, const dem_export_options *options)

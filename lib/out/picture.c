@@ -10,7 +10,7 @@
 enum { WIDTH = 2000, HEIGHT = 1000, HUES = 6, SWEEPS = 4 };
 
 static const double TURN = 28 * DEM_PI / 180;  // of the long axis out of the picture's plane
-static const double MARGIN = 0.07;
+static const double MARGIN = 0.09;
 
 static const dem_colour STONE = {0.46f, 0.41f, 0.35f};
 

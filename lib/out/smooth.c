@@ -6,7 +6,7 @@
 #include "math/vec.h"
 
 // normals farther apart than this belong to different faces of a solid
-#define CREASE_COSINE 0.8
+#define CREASE_COSINE 0.88  // 28 degrees
 
 enum { MANY = 100 };  // triangles about one vertex: a fan, whose normals are not worth their square
 

@@ -11,16 +11,16 @@
 enum {
     GROUND_FEW_SKY = 24,         // rays to the sky from a point of the ground; if one is stopped,
     GROUND_SKY = 96,             // so many
-    GROUND_FEW_SUN = 8,          // to the sun; if some are stopped and some are not,
+    GROUND_FEW_SUN = 16,         // to the sun; if some are stopped and some are not,
     GROUND_SUN = 48,             // so many
     SMOOTH_TRIANGLES = 1 << 20,  // more than pixels: nobody sees their facets
 };
 
 static const double SUN = 0.75, SKY = 0.50;  // light of the sun straight on, and of the whole sky
 static const double SUN_SIZE = 0.22;         // radius of the sun's disk at unit distance
-static const double SHADOW = 0.70;           // how dark the ground may become
+static const double SHADOW = 0.62;           // how dark the ground may become
 static const double GROUND_REACH = 0.4;      // how far bodies darken the ground
-static const double FADE = 0.12;             // edge of the picture without shadows, over its smaller side
+static const double FADE = 0.14;             // edge of the picture without shadows, over its smaller side
 static const double BEHIND = 0.12;           // brightness of what hides the sky, over that of the sky
 static const double NEAR = 2e-4;             // rays start so far off the surface, not to meet it
 
@@ -116,7 +116,7 @@ static void set_lights(dem_stage *s)
     deal_lights(&s->lights);
     s->up = v->ground_up;
     dem_vec3 ahead = v3_unit(v3_along(v->forward, -v3_dot(v->forward, s->up), s->up));
-    s->sun = v3_unit(v3_along(v3_along(v3_scale(v->right, -0.7), -0.35, ahead), 1.0, s->up));
+    s->sun = v3_unit(v3_along(v3_along(v3_scale(v->right, -0.5), -0.25, ahead), 1.0, s->up));
     s->sun_u = v3_normal_to(s->sun);
     s->sun_v = v3_cross(s->sun, s->sun_u);
     s->ground = (v->ground - v3_dot(v->centre, s->up)) / v->radius;
