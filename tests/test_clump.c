@@ -131,11 +131,11 @@ typedef struct refusal {
     void (*spoil)(dem_clump_def *def, dem_ball *balls, dem_mesh *surface);
 } refusal;
 
-#define SPOIL(name, statement)                                                       \
-    static void spoil_##name(dem_clump_def *d, dem_ball *b, dem_mesh *s)             \
-    {                                                                                \
-        (void)d, (void)b, (void)s;                                                   \
-        statement;                                                                   \
+#define SPOIL(name, statement)                                                                                         \
+    static void spoil_##name(dem_clump_def *d, dem_ball *b, dem_mesh *s)                                               \
+    {                                                                                                                  \
+        (void)d, (void)b, (void)s;                                                                                     \
+        statement;                                                                                                     \
     }
 SPOIL(count, d->ball_count = 0)
 SPOIL(radius, b[1].radius = 0)
@@ -162,15 +162,27 @@ SPOIL(broken_parameters, d->parameters = "{")
 static void what_is_no_clump_is_refused_by_the_name_of_its_key(void **state)
 {
     (void)state;
-    const refusal cases[] = {
-        {"spheres:", spoil_count}, {"spheres[1]", spoil_radius}, {"spheres[2]", spoil_negative_radius},
-        {"spheres[0]", spoil_nan_radius}, {"spheres[0]", spoil_infinite_radius}, {"spheres[1]", spoil_centre},
-        {"spheres[1]", spoil_far_centre}, {"density", spoil_density}, {"mass", spoil_mass}, {"volume", spoil_volume},
-        {"inertia", spoil_zero_inertia}, {"I1 <= I2 <= I3", spoil_order}, {"I1 + I2", spoil_inequality},
-        {"union.volume", spoil_union_volume}, {"to_mesh.position", spoil_position},
-        {"to_mesh.orientation", spoil_orientation}, {"to_mesh.orientation", spoil_nan_orientation},
-        {"surface.vertices[2]", spoil_vertex}, {"surface.triangles[1]", spoil_index},
-        {"made.parameters", spoil_parameters}, {"made.parameters", spoil_broken_parameters}};
+    const refusal cases[] = {{"spheres:", spoil_count},
+                             {"spheres[1]", spoil_radius},
+                             {"spheres[2]", spoil_negative_radius},
+                             {"spheres[0]", spoil_nan_radius},
+                             {"spheres[0]", spoil_infinite_radius},
+                             {"spheres[1]", spoil_centre},
+                             {"spheres[1]", spoil_far_centre},
+                             {"density", spoil_density},
+                             {"mass", spoil_mass},
+                             {"volume", spoil_volume},
+                             {"inertia", spoil_zero_inertia},
+                             {"I1 <= I2 <= I3", spoil_order},
+                             {"I1 + I2", spoil_inequality},
+                             {"union.volume", spoil_union_volume},
+                             {"to_mesh.position", spoil_position},
+                             {"to_mesh.orientation", spoil_orientation},
+                             {"to_mesh.orientation", spoil_nan_orientation},
+                             {"surface.vertices[2]", spoil_vertex},
+                             {"surface.triangles[1]", spoil_index},
+                             {"made.parameters", spoil_parameters},
+                             {"made.parameters", spoil_broken_parameters}};
     for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
         dem_clump_def def = sample_clump();
         dem_ball balls[SAMPLE_BALLS];

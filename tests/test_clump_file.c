@@ -9,8 +9,9 @@
 #include "clump/file.h"
 
 // the shortest file: what a person would type
-#define MEMBERS "\"schema\": \"dem-clump/1\", \"density\": 2500, \"mass\": 5, \"inertia\": [1, 1, 1.5], " \
-                "\"spheres\": [[0, 0, 0, 1]]}"
+#define MEMBERS                                                                                                        \
+    "\"schema\": \"dem-clump/1\", \"density\": 2500, \"mass\": 5, \"inertia\": [1, 1, 1.5], "                          \
+    "\"spheres\": [[0, 0, 0, 1]]}"
 #define SHORTEST "{" MEMBERS
 #define WITH(member) "{" member ", " MEMBERS
 
@@ -80,7 +81,8 @@ static void spheres_stand_one_on_a_line(void **state)
     dem_error error;
     check_ok(dem_clump_encode(clump, &text, &error), error);
     check(strncmp(text.data, "{\n  \"schema\": \"dem-clump/1\",\n", 29) == 0);
-    check(strstr(text.data, "\n    [0.59999999999999998, 0.10000000000000001, -0.20000000000000001, 0.40000000000000002],\n"));
+    check(strstr(text.data,
+                 "\n    [0.59999999999999998, 0.10000000000000001, -0.20000000000000001, 0.40000000000000002],\n"));
     dem_clump_destroy(clump);
     dem_buffer_release(&text);
 }
@@ -135,7 +137,8 @@ static void a_bad_value_is_refused_by_its_place(void **state)
         {"inertia: ", "{\"schema\": \"dem-clump/1\", \"density\": 1, \"mass\": 1, \"inertia\": [1, 1, 3], "
                       "\"spheres\": [[0, 0, 0, 1]]}"},
         {"spheres: ", "{\"schema\": \"dem-clump/1\", \"density\": 1, \"mass\": 1, \"inertia\": [1, 1, 1]}"},
-        {"spheres: ", "{\"schema\": \"dem-clump/1\", \"density\": 1, \"mass\": 1, \"inertia\": [1, 1, 1], \"spheres\": []}"},
+        {"spheres: ",
+         "{\"schema\": \"dem-clump/1\", \"density\": 1, \"mass\": 1, \"inertia\": [1, 1, 1], \"spheres\": []}"},
         {"spheres[1]: ", "{\"schema\": \"dem-clump/1\", \"density\": 1, \"mass\": 1, \"inertia\": [1, 1, 1], "
                          "\"spheres\": [[0, 0, 0, 1], [0, 0, 1]]}"},
         {"spheres[1]: ", "{\"schema\": \"dem-clump/1\", \"density\": 1, \"mass\": 1, \"inertia\": [1, 1, 1], "
@@ -219,7 +222,8 @@ static void the_published_schema_names_every_key(void **state)
 {
     (void)state;
     static const char *const sections[][14] = {
-        {"", "schema", "name", "source", "density", "mass", "volume", "inertia", "mass_from", "to_mesh", "union", "spheres"},
+        {"", "schema", "name", "source", "density", "mass", "volume", "inertia", "mass_from", "to_mesh", "union",
+         "spheres"},
         {"", "fidelity", "shape", "made", "surface"},
         {"source", "mesh", "sha256", "unit"},
         {"to_mesh", "position", "orientation"},

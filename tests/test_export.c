@@ -67,7 +67,8 @@ static size_t read_xyzr(const dem_buffer *text, dem_ball *balls, size_t room)
         if (*p == '#')
             continue;
         check(count < room);
-        double *parts[4] = {&balls[count].centre.x, &balls[count].centre.y, &balls[count].centre.z, &balls[count].radius};
+        double *parts[4] = {&balls[count].centre.x, &balls[count].centre.y, &balls[count].centre.z,
+                            &balls[count].radius};
         for (int k = 0; k < 4; k++) {
             p = dem_parse_double(p, next, parts[k]);
             check(p && *p == (k < 3 ? ' ' : '\n'));
@@ -220,7 +221,8 @@ static void stl_keeps_its_form_at_every_scale(void **state)
     for (int i = 0; i < 2; i++) {
         dem_ball balls[SAMPLE_BALLS];
         for (int k = 0; k < SAMPLE_BALLS; k++)
-            balls[k] = (dem_ball){v3_scale(def.balls[k].centre, i ? 1e9 : 1e-9), def.balls[k].radius * (i ? 1e9 : 1e-9)};
+            balls[k] =
+                (dem_ball){v3_scale(def.balls[k].centre, i ? 1e9 : 1e-9), def.balls[k].radius * (i ? 1e9 : 1e-9)};
         dem_clump_def scaled = balls_only(balls, SAMPLE_BALLS);
         dem_buffer out = written("stl", &scaled, (dem_export_options){0});
         sizes[i] = out.size;

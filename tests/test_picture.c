@@ -268,7 +268,9 @@ static void thousands_of_bodies_share_a_shape(void **state)
     check(bodies != NULL);
     for (int i = 0; i < COUNT; i++)
         bodies[i] = (dem_render_body){.position = {2.0 * (i % SIDE), 2.0 * (i / SIDE % SIDE), 2.0 * (i / SIDE / SIDE)},
-                                      .orientation = {1, 0, 0, 0}, .scale = 1, .colour = {0.5f, 0.3f, 0.2f}};
+                                      .orientation = {1, 0, 0, 0},
+                                      .scale = 1,
+                                      .colour = {0.5f, 0.3f, 0.2f}};
     dem_render_scene scene = {&shape, 1, bodies, COUNT};
     dem_camera camera = {{1, 2, -1}, {0, 0, 1}, 30, 0.05};
     dem_view view = dem_view_fit(&scene, &camera, 160, 120);

@@ -59,7 +59,8 @@ static void rays_meet_a_mesh_where_the_tree_says(void **state)
     dem_error error;
     check_ok(dem_tree_build(&tree, mesh.vertices, mesh.triangles, mesh.triangle_count, &error), error);
     check_ok(dem_ray_add_mesh(scene, mesh.vertices, mesh.vertex_count, mesh.triangles, mesh.triangle_count, v3(0, 0, 0),
-                              1, &error), error);
+                              1, &error),
+             error);
     check_ok(dem_ray_add_instance(scene, 0, &PLAIN, &error), error);
     check_ok(dem_ray_commit(scene, &error), error);
     dem_random r = random_stream(5, 0);
@@ -93,7 +94,8 @@ static void instances_stand_where_their_pose_puts_them(void **state)
     dem_error error;
     check_ok(dem_ray_add_balls(scene, &ball, 1, ball.centre, 1e3, &error), error);
     check_ok(dem_ray_add_mesh(scene, box.vertices, box.vertex_count, box.triangles, box.triangle_count, v3(0, 0, 0), 1,
-                              &error), error);
+                              &error),
+             error);
     check_ok(dem_ray_add_instance(scene, 0, &pose, &error), error);
     pose.position[0] = -5;
     check_ok(dem_ray_add_instance(scene, 1, &pose, &error), error);

@@ -11,7 +11,7 @@
 
 enum {
     LAYOUT = 1,
-    TEXTS = 7,     // name, three of the source, method, parameters, version
+    TEXTS = 7,  // name, three of the source, method, parameters, version
 };
 
 // lengths and radii beyond this have no finite square
@@ -68,7 +68,8 @@ static dem_status check_balls(const dem_clump_def *def, dem_error *error)
     for (size_t i = 0; i < def->ball_count; i++) {
         const dem_ball *b = &def->balls[i];
         if (!usable_vec(b->centre))
-            return dem_fail(error, DEM_BAD_INPUT, "spheres[%zu]: its centre is not finite or beyond 1e100 m; correct it", i);
+            return dem_fail(error, DEM_BAD_INPUT,
+                            "spheres[%zu]: its centre is not finite or beyond 1e100 m; correct it", i);
         if (!(b->radius > 1 / LARGEST && b->radius < LARGEST))
             return dem_fail(error, DEM_BAD_INPUT, "spheres[%zu]: its radius must be positive; correct or remove it", i);
     }
@@ -106,9 +107,10 @@ static dem_status check_surface(const dem_mesh *surface, dem_error *error)
             return dem_fail(error, DEM_BAD_INPUT, "surface.vertices[%zu]: is not finite; correct it", i);
     for (size_t i = 0; i < 3 * surface->triangle_count; i++)
         if (surface->triangles[i] >= surface->vertex_count)
-            return dem_fail(error, DEM_BAD_INPUT,
-                            "surface.triangles[%zu]: vertex %lu does not exist, there are %zu (counted from 0); correct it",
-                            i / 3, (unsigned long)surface->triangles[i], surface->vertex_count);
+            return dem_fail(
+                error, DEM_BAD_INPUT,
+                "surface.triangles[%zu]: vertex %lu does not exist, there are %zu (counted from 0); correct it", i / 3,
+                (unsigned long)surface->triangles[i], surface->vertex_count);
     return DEM_OK;
 }
 
@@ -118,8 +120,9 @@ static dem_status check_pose(const dem_clump_def *def, dem_error *error)
         return refuse(error, "to_mesh.position: is not finite; give x, y, z in metres");
     double norm = quat_norm(def->orientation);
     if (!(fabs(norm - 1) <= 1e-3))
-        return dem_fail(error, DEM_BAD_INPUT, "to_mesh.orientation: must be a unit quaternion w, x, y, z, has length %.6g; %s",
-                        norm, "[1, 0, 0, 0] means not turned");
+        return dem_fail(error, DEM_BAD_INPUT,
+                        "to_mesh.orientation: must be a unit quaternion w, x, y, z, has length %.6g; %s", norm,
+                        "[1, 0, 0, 0] means not turned");
     return DEM_OK;
 }
 
@@ -166,11 +169,20 @@ static void tidy(double *values, size_t count)
 // the values of `def` without its arrays and texts
 static dem_clump header_of(const dem_clump_def *def)
 {
-    dem_clump header = {.layout = LAYOUT, .seconds = def->seconds, .density = def->density, .mass = def->mass,
-                        .volume = def->volume, .mass_from = def->mass_from, .position = def->position,
-                        .orientation = def->orientation, .union_volume = def->union_volume,
-                        .union_centre = def->union_centre, .fidelity = def->fidelity, .shape = def->shape,
-                        .seed = def->seed, .ball_count = def->ball_count};
+    dem_clump header = {.layout = LAYOUT,
+                        .seconds = def->seconds,
+                        .density = def->density,
+                        .mass = def->mass,
+                        .volume = def->volume,
+                        .mass_from = def->mass_from,
+                        .position = def->position,
+                        .orientation = def->orientation,
+                        .union_volume = def->union_volume,
+                        .union_centre = def->union_centre,
+                        .fidelity = def->fidelity,
+                        .shape = def->shape,
+                        .seed = def->seed,
+                        .ball_count = def->ball_count};
     memcpy(header.inertia, def->inertia, sizeof header.inertia);
     memcpy(header.union_inertia, def->union_inertia, sizeof header.union_inertia);
     if (fabs(quat_norm(def->orientation) - 1) > 1e-12)  // typed by hand: 0.707
@@ -248,19 +260,32 @@ dem_clump_def dem_clump_view(const dem_clump *clump)
     const char *texts[TEXTS];
     for (int i = 0; i < TEXTS; i++)
         texts[i] = block + clump->texts[i];
-    dem_clump_def view = {.name = texts[0], .source_mesh = texts[1], .source_sha256 = texts[2],
-                          .source_unit = texts[3], .density = clump->density, .mass = clump->mass,
-                          .volume = clump->volume, .mass_from = (dem_mass_source)clump->mass_from,
-                          .position = clump->position, .orientation = clump->orientation,
-                          .union_volume = clump->union_volume, .union_centre = clump->union_centre,
-                          .balls = (const dem_ball *)(block + clump->balls), .ball_count = clump->ball_count,
-                          .fidelity = clump->fidelity, .shape = clump->shape, .method = texts[4],
-                          .parameters = texts[5], .seed = clump->seed, .seconds = clump->seconds,
+    dem_clump_def view = {.name = texts[0],
+                          .source_mesh = texts[1],
+                          .source_sha256 = texts[2],
+                          .source_unit = texts[3],
+                          .density = clump->density,
+                          .mass = clump->mass,
+                          .volume = clump->volume,
+                          .mass_from = (dem_mass_source)clump->mass_from,
+                          .position = clump->position,
+                          .orientation = clump->orientation,
+                          .union_volume = clump->union_volume,
+                          .union_centre = clump->union_centre,
+                          .balls = (const dem_ball *)(block + clump->balls),
+                          .ball_count = clump->ball_count,
+                          .fidelity = clump->fidelity,
+                          .shape = clump->shape,
+                          .method = texts[4],
+                          .parameters = texts[5],
+                          .seed = clump->seed,
+                          .seconds = clump->seconds,
                           .version = texts[6]};
     memcpy(view.inertia, clump->inertia, sizeof view.inertia);
     memcpy(view.union_inertia, clump->union_inertia, sizeof view.union_inertia);
     if (clump->triangle_count)
-        view.surface = (dem_mesh){.vertices = (dem_vec3 *)(block + clump->vertices), .vertex_count = clump->vertex_count,
+        view.surface = (dem_mesh){.vertices = (dem_vec3 *)(block + clump->vertices),
+                                  .vertex_count = clump->vertex_count,
                                   .triangles = (uint32_t *)(block + clump->triangles),
                                   .triangle_count = clump->triangle_count};
     return view;

@@ -124,13 +124,14 @@ typedef enum need { NEEDED, OPTIONAL } need;
 typedef struct reader {
     const char *file;
     dem_error *error;
-    const char *section;       // where `object` stands in the file, "" for the outermost
+    const char *section;  // where `object` stands in the file, "" for the outermost
     const dem_json *object;
 } reader;
 
 static dem_status refuse(const reader *r, const char *key, const char *what)
 {
-    return dem_fail_at(r->error, DEM_BAD_INPUT, r->file, 0, "%s%s%s: %s", r->section, *r->section ? "." : "", key, what);
+    return dem_fail_at(r->error, DEM_BAD_INPUT, r->file, 0, "%s%s%s: %s", r->section, *r->section ? "." : "", key,
+                       what);
 }
 
 // the object that a section's values stand in; a section that is absent is an empty one
@@ -152,7 +153,8 @@ static bool to_figure(const dem_json *value, double *number)
 }
 
 // `count` numbers, one of them plain, more in an array; the optional may be null
-static dem_status read_numbers(const reader *r, const char *key, need n, const char *what, size_t count, double *numbers)
+static dem_status read_numbers(const reader *r, const char *key, need n, const char *what, size_t count,
+                               double *numbers)
 {
     const dem_json *value = dem_json_member(r->object, key);
     if (!value)
@@ -319,7 +321,8 @@ static dem_status read_triangles(const reader *r, dem_mesh *surface)
             surface->triangles[3 * i + k] = fits ? (uint32_t)vertex : 0;
         }
         if (!fits)
-            return refuse_item(r, "triangles", i, "needs 3 vertices, counted from 0; correct it or leave the surface out");
+            return refuse_item(r, "triangles", i,
+                               "needs 3 vertices, counted from 0; correct it or leave the surface out");
     }
     return DEM_OK;
 }
@@ -341,8 +344,11 @@ static dem_status read_surface(const reader *r, dem_mesh *surface)
 // everything is unknown until it is read
 static dem_clump_def nothing(void)
 {
-    dem_clump_def def = {.orientation = {1, 0, 0, 0}, .union_volume = NAN, .union_centre = {NAN, NAN, NAN},
-                         .union_inertia = {NAN, NAN, NAN}, .seconds = NAN};
+    dem_clump_def def = {.orientation = {1, 0, 0, 0},
+                         .union_volume = NAN,
+                         .union_centre = {NAN, NAN, NAN},
+                         .union_inertia = {NAN, NAN, NAN},
+                         .seconds = NAN};
     for (int i = 0; i < DEM_FIDELITY_FIGURES; i++)
         *figure_of(&def.fidelity, &dem_fidelity_figures[i]) = NAN;
     for (int i = 0; i < DEM_SHAPE_FIGURES; i++)
@@ -396,7 +402,8 @@ dem_status dem_clump_read(const char *path, dem_clump **clump, dem_error *error)
     *clump = NULL;
     dem_buffer text;
     DEM_TRY(dem_file_read(path, &text, error));
-    dem_status status = dem_clump_decode(text.data, text.size, strcmp(path, "-") == 0 ? "standard input" : path, clump, error);
+    dem_status status =
+        dem_clump_decode(text.data, text.size, strcmp(path, "-") == 0 ? "standard input" : path, clump, error);
     dem_buffer_release(&text);
     return status;
 }

@@ -15,10 +15,10 @@ typedef enum dem_frame {
 
 /// Zero-initialised: principal frame, no mesh, all cores.
 typedef struct dem_export_options {
-    dem_frame frame;       ///< for the formats that have only spheres: xyzr, stl, vtp
-    double unit;           ///< length that is written as 1 in the frame of the mesh [m]; 0: 1
-    const char *unit_name; ///< of it, for comments; NULL: m
-    const dem_mesh *mesh;  ///< in its own frame [m]; NULL: the surface kept in the clump serves instead
+    dem_frame frame;        ///< for the formats that have only spheres: xyzr, stl, vtp
+    double unit;            ///< length that is written as 1 in the frame of the mesh [m]; 0: 1
+    const char *unit_name;  ///< of it, for comments; NULL: m
+    const dem_mesh *mesh;   ///< in its own frame [m]; NULL: the surface kept in the clump serves instead
     int threads;
 } dem_export_options;
 
@@ -26,7 +26,7 @@ typedef struct dem_exporter {
     const char *name;
     const char *suffix;  ///< of file names that mean this format
     const char *about;
-    bool needs_mesh;     ///< looks better with `mesh` given
+    bool needs_mesh;  ///< looks better with `mesh` given
     /// Appends the file. Errors: DEM_NO_MEMORY, DEM_UNAVAILABLE, DEM_INTERRUPTED.
     dem_status (*write)(const dem_clump *clump, const dem_export_options *options, dem_buffer *out, dem_error *error);
 } dem_exporter;

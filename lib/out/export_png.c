@@ -12,8 +12,8 @@ static dem_status write_png(const dem_clump *clump, const dem_export_options *op
         return dem_picture_draw(&ctx, &def.surface, def.balls, def.ball_count, out, error);
     dem_export_options in_mesh_frame = {.frame = DEM_FRAME_MESH};
     dem_ball *balls = dem_export_balls(&in_mesh_frame, &def);
-    dem_status status = balls ? dem_picture_draw(&ctx, options->mesh, balls, def.ball_count, out, error)
-                              : dem_fail_memory(error);
+    dem_status status =
+        balls ? dem_picture_draw(&ctx, options->mesh, balls, def.ball_count, out, error) : dem_fail_memory(error);
     free(balls);
     return status;
 }

@@ -9,8 +9,9 @@
 
 enum {
     HEADER = 80,
-    FINE = 3, COARSE = 2,   // times each triangle of the icosahedron is divided in four
-    MANY = 500,             // balls from which coarse is fine enough
+    FINE = 3,
+    COARSE = 2,  // times each triangle of the icosahedron is divided in four
+    MANY = 500,  // balls from which coarse is fine enough
 };
 
 // the circle in which a neighbour cuts the ball: the part with x . u > h is hidden, x from the ball's centre
@@ -103,15 +104,16 @@ static void divide_facet(writer *w, dem_vec3 a, dem_vec3 b, dem_vec3 c, int time
 
 static void put_icosahedron(writer *w, int times)
 {
-    static const unsigned char faces[20][3] = {
-        {0, 11, 5}, {0, 5, 1}, {0, 1, 7}, {0, 7, 10}, {0, 10, 11}, {1, 5, 9}, {5, 11, 4}, {11, 10, 2}, {10, 7, 6},
-        {7, 1, 8}, {3, 9, 4}, {3, 4, 2}, {3, 2, 6}, {3, 6, 8}, {3, 8, 9}, {4, 9, 5}, {2, 4, 11}, {6, 2, 10}, {8, 6, 7},
-        {9, 8, 1}};
+    static const unsigned char faces[20][3] = {{0, 11, 5}, {0, 5, 1},  {0, 1, 7},   {0, 7, 10}, {0, 10, 11},
+                                               {1, 5, 9},  {5, 11, 4}, {11, 10, 2}, {10, 7, 6}, {7, 1, 8},
+                                               {3, 9, 4},  {3, 4, 2},  {3, 2, 6},   {3, 6, 8},  {3, 8, 9},
+                                               {4, 9, 5},  {2, 4, 11}, {6, 2, 10},  {8, 6, 7},  {9, 8, 1}};
     const double g = 1.618033988749894848;
-    const dem_vec3 corners[12] = {{-1, g, 0}, {1, g, 0}, {-1, -g, 0}, {1, -g, 0}, {0, -1, g}, {0, 1, g},
-                                  {0, -1, -g}, {0, 1, -g}, {g, 0, -1}, {g, 0, 1}, {-g, 0, -1}, {-g, 0, 1}};
+    const dem_vec3 corners[12] = {{-1, g, 0},  {1, g, 0},  {-1, -g, 0}, {1, -g, 0}, {0, -1, g},  {0, 1, g},
+                                  {0, -1, -g}, {0, 1, -g}, {g, 0, -1},  {g, 0, 1},  {-g, 0, -1}, {-g, 0, 1}};
     for (int i = 0; i < 20; i++)
-        divide_facet(w, v3_unit(corners[faces[i][0]]), v3_unit(corners[faces[i][1]]), v3_unit(corners[faces[i][2]]), times);
+        divide_facet(w, v3_unit(corners[faces[i][0]]), v3_unit(corners[faces[i][1]]), v3_unit(corners[faces[i][2]]),
+                     times);
 }
 
 // the circles on ball i; false: another ball holds it whole
@@ -151,7 +153,9 @@ static dem_status write_stl(const dem_clump *clump, const dem_export_options *op
     size_t n = def.ball_count, start = out->size;
     char header[HEADER + sizeof(uint32_t)] = "union of the spheres of a clump; dem-clump " DEM_VERSION;
     dem_ball *balls = dem_export_balls(options, &def);
-    writer w = {.out = out, .cuts = dem_alloc(n, sizeof *w.cuts), .polygon = dem_alloc(n + 3, sizeof *w.polygon),
+    writer w = {.out = out,
+                .cuts = dem_alloc(n, sizeof *w.cuts),
+                .polygon = dem_alloc(n + 3, sizeof *w.polygon),
                 .rest = dem_alloc(n + 3, sizeof *w.rest)};
     dem_buffer_bytes(out, header, sizeof header);
     bool failed = !balls || !w.cuts || !w.polygon || !w.rest;

@@ -7,10 +7,10 @@
 
 typedef struct array {
     const char *type, *name;
-    int width;            // components of a tuple
+    int width;  // components of a tuple
     const void *data;
     size_t bytes;
-    size_t tuples;        // only of field data
+    size_t tuples;  // only of field data
 } array;
 
 static void put_array(dem_buffer *out, const array *a, size_t *offset)
@@ -28,10 +28,11 @@ static void put_file(dem_buffer *out, const array arrays[ARRAYS], size_t count)
 {
     size_t offset = 0;
     const uint16_t probe = 1;
-    dem_buffer_print(out,
-                     "<?xml version=\"1.0\"?>\n"
-                     "<VTKFile type=\"PolyData\" version=\"1.0\" byte_order=\"%s\" header_type=\"UInt64\">\n<PolyData>\n",
-                     *(const unsigned char *)&probe ? "LittleEndian" : "BigEndian");
+    dem_buffer_print(
+        out,
+        "<?xml version=\"1.0\"?>\n"
+        "<VTKFile type=\"PolyData\" version=\"1.0\" byte_order=\"%s\" header_type=\"UInt64\">\n<PolyData>\n",
+        *(const unsigned char *)&probe ? "LittleEndian" : "BigEndian");
     dem_buffer_text(out, "<FieldData>\n");
     for (int i = 0; i < FIELDS; i++)
         put_array(out, &arrays[i], &offset);
@@ -60,7 +61,7 @@ static dem_status write_vtp(const dem_clump *clump, const dem_export_options *op
 {
     dem_clump_def def = dem_clump_view(clump);
     size_t n = def.ball_count;
-    double *points = dem_alloc(5 * n, sizeof *points);  // x y z of each, then the radii, then the diameters
+    double *points = dem_alloc(5 * n, sizeof *points);     // x y z of each, then the radii, then the diameters
     int64_t *numbers = dem_alloc(2 * n, sizeof *numbers);  // 0 1 2 ..., then 1 2 3 ...
     if (points && numbers) {
         for (size_t i = 0; i < n; i++) {
@@ -76,17 +77,16 @@ static dem_status write_vtp(const dem_clump *clump, const dem_export_options *op
         const double position[3] = {def.position.x, def.position.y, def.position.z};
         const double turn[4] = {def.orientation.w, def.orientation.x, def.orientation.y, def.orientation.z};
         const size_t real = sizeof(double), whole = sizeof(int64_t);
-        const array arrays[ARRAYS] = {
-            {"Float64", "density", 1, &def.density, real, 1},
-            {"Float64", "mass", 1, &def.mass, real, 1},
-            {"Float64", "inertia", 3, def.inertia, 3 * real, 1},
-            {"Float64", "to_mesh_position", 3, position, 3 * real, 1},
-            {"Float64", "to_mesh_orientation", 4, turn, 4 * real, 1},
-            {"Float64", "Points", 3, points, 3 * n * real, 0},
-            {"Float64", "radius", 1, points + 3 * n, n * real, 0},
-            {"Float64", "diameter", 1, points + 4 * n, n * real, 0},
-            {"Int64", "connectivity", 1, numbers, n * whole, 0},
-            {"Int64", "offsets", 1, numbers + n, n * whole, 0}};
+        const array arrays[ARRAYS] = {{"Float64", "density", 1, &def.density, real, 1},
+                                      {"Float64", "mass", 1, &def.mass, real, 1},
+                                      {"Float64", "inertia", 3, def.inertia, 3 * real, 1},
+                                      {"Float64", "to_mesh_position", 3, position, 3 * real, 1},
+                                      {"Float64", "to_mesh_orientation", 4, turn, 4 * real, 1},
+                                      {"Float64", "Points", 3, points, 3 * n * real, 0},
+                                      {"Float64", "radius", 1, points + 3 * n, n * real, 0},
+                                      {"Float64", "diameter", 1, points + 4 * n, n * real, 0},
+                                      {"Int64", "connectivity", 1, numbers, n * whole, 0},
+                                      {"Int64", "offsets", 1, numbers + n, n * whole, 0}};
         put_file(out, arrays, n);
     }
     bool failed = !points || !numbers || out->failed;

@@ -25,8 +25,9 @@ static void put_head(dem_buffer *out, const dem_clump_def *clump, const dem_expo
     dem_vec3 centre = export_ball(options, clump, (dem_ball){{0, 0, 0}, 0}).centre, p = clump->position;
     dem_quat q = clump->orientation;
     put_title(out, clump);
-    dem_buffer_print(out, "# frame: %s\n", mesh_frame ? "mesh, that of the file it was made from"
-                                                      : "principal, centre of mass at 0, axes I1 <= I2 <= I3");
+    dem_buffer_print(out, "# frame: %s\n",
+                     mesh_frame ? "mesh, that of the file it was made from"
+                                : "principal, centre of mass at 0, axes I1 <= I2 <= I3");
     dem_buffer_print(out, "# unit of x y z r: %s\n", export_unit(options));
     put_comment(out, "density [kg/m^3]:", &clump->density, 1);
     put_comment(out, "mass [kg]:", &clump->mass, 1);

@@ -59,7 +59,8 @@ static dem_camera choose_camera(dem_sym3 spread)
     dem_vec3 axes[3];  // shortest first
     dem_sym3_eigen(spread, sizes, axes);
     // the flatter it is, the more from above
-    double thickness = sqrt(fmax(sizes[0], 0) / fmax(sizes[1], 1e-300)), elevation = (62 - 26 * thickness) * DEM_PI / 180;
+    double thickness = sizes[0] > 0 ? sqrt(sizes[0] / sizes[1]) : 0;
+    double elevation = (62 - 26 * thickness) * DEM_PI / 180;
     dem_vec3 up = axes[0], toward = v3_add(v3_scale(axes[1], cos(TURN)), v3_scale(axes[2], sin(TURN)));
     dem_vec3 eye = v3_add(v3_scale(toward, cos(elevation)), v3_scale(up, sin(elevation)));
     return (dem_camera){.forward = v3_scale(eye, -1), .up = up, .margin = MARGIN};
@@ -77,13 +78,13 @@ static dem_colour from_lch(double lightness, double chroma, double hue)
                         (float)(-0.0041960863 * l - 0.7034186147 * m + 1.7076147010 * s)};
 }
 
-// every ball takes, some times over, the hue it has the shortest seams with; those in sight are what counts
+// every ball takes, some times over, the hue it has the shortest seams with, on the surface (arcs are listed ball by ball)
 static void choose_hues(int *hues, size_t count, const dem_ball *balls, const dem_ball_union *seams)
 {
-    size_t begin = 0, end = 0;
+    size_t end = 0;
     for (size_t turn = 0; turn < SWEEPS * count; turn++) {
         size_t i = turn % count;
-        begin = i ? end : 0;
+        size_t begin = i ? end : 0;  // the arcs of this ball
         for (end = begin; end < seams->arc_count && seams->arcs[end].i == i; end++)
             ;
         double met[HUES] = {0};

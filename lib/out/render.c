@@ -18,8 +18,8 @@
 
 enum {
     TILE = 128,
-    BLOCK = 4,          // pixels that share the set of light rays
-    BORDER_LOW = 1,     // pixels about a tile that its averages take in
+    BLOCK = 4,       // pixels that share the set of light rays
+    BORDER_LOW = 1,  // pixels about a tile that its averages take in
     BORDER_HIGH = 2,
     EDGE = TILE + BORDER_LOW + BORDER_HIGH,
     PATCHES = 4,        // surfaces in one pixel
@@ -43,7 +43,7 @@ typedef struct tile {
     int left, top, width, height;  // without the border [pixels]
     cell cells[EDGE][EDGE];
     bool edges[EDGE][EDGE];
-    float ground[NODES][NODES];    // from STEP to the left and above; negative: not lit yet
+    float ground[NODES][NODES];  // from STEP to the left and above; negative: not lit yet
 } tile;
 
 static bool same_surface(const dem_stage *s, const dem_spot *a, const dem_spot *b)

@@ -14,17 +14,17 @@ typedef struct dem_colour {
 
 /// A mesh or balls; many bodies may share one shape. Everything is borrowed.
 typedef struct dem_render_shape {
-    const dem_mesh *mesh;           ///< NULL: balls
+    const dem_mesh *mesh;  ///< NULL: balls
     const dem_ball *balls;
     size_t ball_count;
-    const dem_colour *ball_colours; ///< one each; NULL: all in the body's colour
+    const dem_colour *ball_colours;  ///< one each; NULL: all in the body's colour
 } dem_render_shape;
 
 typedef struct dem_render_body {
     uint32_t shape;
-    dem_vec3 position;    ///< [m]
+    dem_vec3 position;  ///< [m]
     dem_quat orientation;
-    double scale;         ///< [-]
+    double scale;  ///< [-]
     dem_colour colour;
 } dem_render_body;
 
@@ -37,10 +37,10 @@ typedef struct dem_render_scene {
 
 /// A camera that finds its own place: everything is in the picture, `margin` of its smaller side left free.
 typedef struct dem_camera {
-    dem_vec3 forward;       ///< direction of sight
-    dem_vec3 up;            ///< normal of the ground, upwards in the picture; not parallel to `forward`
-    double field_deg;       ///< vertical angle of view; 0: parallel rays
-    double margin;          ///< [-]
+    dem_vec3 forward;  ///< direction of sight
+    dem_vec3 up;       ///< normal of the ground, upwards in the picture; not parallel to `forward`
+    double field_deg;  ///< vertical angle of view; 0: parallel rays
+    double margin;     ///< [-]
 } dem_camera;
 
 /// A camera in its place. Pixel (0, 0) is the upper left one, its centre at (0.5, 0.5).

@@ -34,7 +34,8 @@ static double corner_angle(const dem_mesh *mesh, size_t corner)
 {
     size_t t = corner / 3 * 3;
     dem_vec3 at = vertex(mesh, corner);
-    dem_vec3 u = v3_sub(vertex(mesh, t + (corner + 1 - t) % 3), at), v = v3_sub(vertex(mesh, t + (corner + 2 - t) % 3), at);
+    dem_vec3 u = v3_sub(vertex(mesh, t + (corner + 1 - t) % 3), at),
+             v = v3_sub(vertex(mesh, t + (corner + 2 - t) % 3), at);
     return atan2(v3_norm(v3_cross(u, v)), v3_dot(u, v));
 }
 
@@ -70,7 +71,8 @@ static dem_vec3 smooth_normal(const corners *c, size_t corner)
 float *dem_mesh_corner_normals(const dem_mesh *mesh)
 {
     size_t count = mesh->triangle_count;
-    corners c = {.mesh = mesh, .normals = dem_alloc(count, sizeof *c.normals),
+    corners c = {.mesh = mesh,
+                 .normals = dem_alloc(count, sizeof *c.normals),
                  .begins = dem_alloc_zero(mesh->vertex_count + 2, sizeof *c.begins),
                  .lists = dem_alloc(3 * count, sizeof *c.lists)};
     float *result = dem_alloc(9 * count, sizeof *result);

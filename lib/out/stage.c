@@ -16,6 +16,9 @@ enum {
     SMOOTH_TRIANGLES = 1 << 20,  // more than pixels: nobody sees their facets
 };
 
+_Static_assert(GROUND_SKY <= STAGE_SUBSETS * STAGE_SKY_RAYS && GROUND_SUN <= STAGE_SUBSETS * STAGE_SUN_RAYS,
+               "the ground takes its rays from the set of the bodies");
+
 static const double SUN = 0.75, SKY = 0.50;  // light of the sun straight on, and of the whole sky
 static const double SUN_SIZE = 0.22;         // radius of the sun's disk at unit distance
 static const double SHADOW = 0.62;           // how dark the ground may become
@@ -33,20 +36,22 @@ void dem_even_point(size_t index, double *u, double *v)
     *v = modf(0.5 + 0.5698402909980532 * (double)(index + 1), &whole);
 }
 
-static void deal_lights(stage_lights *lights)
+// even points of the unit disk
+static dem_vec3 disk_point(size_t index)
 {
     double u, v;
+    dem_even_point(index, &u, &v);
+    return v3(sqrt(u) * cos(2 * DEM_PI * v), sqrt(u) * sin(2 * DEM_PI * v), 0);
+}
+
+static void deal_lights(stage_lights *lights)
+{
     for (size_t i = 0; i < STAGE_SUBSETS * STAGE_SKY_RAYS; i++) {
-        dem_even_point(i, &u, &v);
-        double r = sqrt(u), angle = 2 * DEM_PI * v;
-        lights->sky[i] = v3(r * cos(angle), r * sin(angle), sqrt(1 - u));
+        dem_vec3 d = disk_point(i);  // lifted onto the half sphere, it is cosine-weighted (Malley)
+        lights->sky[i] = v3(d.x, d.y, sqrt(fmax(0, 1 - v3_norm2(d))));
     }
-    for (size_t i = 0; i < STAGE_SUBSETS * STAGE_SUN_RAYS; i++) {
-        dem_even_point(i, &u, &v);
-        double r = sqrt(u), angle = 2 * DEM_PI * v;
-        lights->sun[i][0] = r * cos(angle);
-        lights->sun[i][1] = r * sin(angle);
-    }
+    for (size_t i = 0; i < STAGE_SUBSETS * STAGE_SUN_RAYS; i++)
+        lights->sun[i] = disk_point(i);
 }
 
 static void choose_frame(const dem_render_shape *shape, stage_shape *frame)
@@ -126,8 +131,8 @@ static void set_lights(dem_stage *s)
 
 static dem_ray make_ray(dem_vec3 from, dem_vec3 to, double near)
 {
-    return (dem_ray){{(float)from.x, (float)from.y, (float)from.z}, (float)near,
-                     {(float)to.x, (float)to.y, (float)to.z}, INFINITY};
+    return (dem_ray){
+        {(float)from.x, (float)from.y, (float)from.z}, (float)near, {(float)to.x, (float)to.y, (float)to.z}, INFINITY};
 }
 
 static void describe_triangle(const dem_stage *s, const dem_render_body *body, const dem_ray_hit *hit, dem_spot *p)
@@ -239,8 +244,8 @@ static double sun_at(const dem_stage *s, const dem_spot *p, hand h, double *open
 {
     double sum = 0, all = 0;
     for (size_t i = h.first; i < h.first + h.count; i++) {
-        const double *disk = s->lights.sun[i];
-        double a = SUN_SIZE * (h.c * disk[0] - h.s * disk[1]), b = SUN_SIZE * (h.s * disk[0] + h.c * disk[1]);
+        dem_vec3 d = s->lights.sun[i];
+        double a = SUN_SIZE * (h.c * d.x - h.s * d.y), b = SUN_SIZE * (h.s * d.x + h.c * d.y);
         dem_vec3 along = v3_unit(v3_along(v3_along(s->sun, a, s->sun_u), b, s->sun_v));
         double slope = v3_dot(along, p->normal);
         if (slope <= 0)

@@ -6,16 +6,16 @@
 #include "ray/ray.h"
 
 enum {
-    STAGE_SUBSETS = 16,   // neighbouring pixels share a set of light rays, each takes another part of it
-    STAGE_SKY_RAYS = 8,   // of one part
+    STAGE_SUBSETS = 16,  // neighbouring pixels share a set of light rays, each takes another part of it
+    STAGE_SKY_RAYS = 8,  // of one part
     STAGE_SUN_RAYS = 3,
 };
 /// The `body` of a spot on the ground.
 #define STAGE_GROUND UINT32_MAX
 
 typedef struct stage_lights {
-    dem_vec3 sky[STAGE_SUBSETS * STAGE_SKY_RAYS];   // cosine-weighted about z
-    double sun[STAGE_SUBSETS * STAGE_SUN_RAYS][2];  // in a unit disk
+    dem_vec3 sky[STAGE_SUBSETS * STAGE_SKY_RAYS];  // directions, cosine-weighted about z
+    dem_vec3 sun[STAGE_SUBSETS * STAGE_SUN_RAYS];  // points of a unit disk, z = 0
 } stage_lights;
 
 /// A shape's own frame, in which it has about unit size: the middle of its box, half its diagonal.

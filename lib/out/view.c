@@ -7,7 +7,8 @@ static dem_vec3 placed(const dem_render_body *body, dem_vec3 point)
 }
 
 // calls `visit` with balls that hold the scene between them: corners of triangles and the balls themselves
-static void visit_all(const dem_render_scene *scene, void (*visit)(void *user, dem_vec3 centre, double radius), void *user)
+static void visit_all(const dem_render_scene *scene, void (*visit)(void *user, dem_vec3 centre, double radius),
+                      void *user)
 {
     for (size_t i = 0; i < scene->body_count; i++) {
         const dem_render_body *body = &scene->bodies[i];
@@ -37,7 +38,8 @@ static void widen(void *user, dem_vec3 centre, double radius)
 
 dem_view dem_view_fit(const dem_render_scene *scene, const dem_camera *camera, int width, int height)
 {
-    dem_view view = {.forward = v3_unit(camera->forward), .ground_up = v3_unit(camera->up), .width = width, .height = height};
+    dem_view view = {
+        .forward = v3_unit(camera->forward), .ground_up = v3_unit(camera->up), .width = width, .height = height};
     view.right = v3_unit(v3_cross(view.forward, view.ground_up));
     view.up = v3_cross(view.right, view.forward);
     extent e = {.axes = {view.right, view.up, view.forward, view.ground_up}};

@@ -63,7 +63,8 @@ void dem_ray_destroy(dem_ray_scene *scene)
 static dem_status add_shape(dem_ray_scene *scene, RTCGeometry geometry, dem_error *error)
 {
     dem_status status = outcome(scene, error);
-    if (status == DEM_OK && !dem_grow(&scene->shapes, &scene->shape_capacity, scene->shape_count, sizeof *scene->shapes))
+    if (status == DEM_OK &&
+        !dem_grow(&scene->shapes, &scene->shape_capacity, scene->shape_count, sizeof *scene->shapes))
         status = dem_fail_memory(error);
     if (status == DEM_OK) {
         RTCScene shape = rtcNewScene(scene->device);
@@ -107,7 +108,8 @@ dem_status dem_ray_add_balls(dem_ray_scene *scene, const dem_ball *balls, size_t
                              dem_error *error)
 {
     RTCGeometry geometry = rtcNewGeometry(scene->device, RTC_GEOMETRY_TYPE_SPHERE_POINT);
-    float *points = rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT4, 4 * sizeof(float), count);
+    float *points =
+        rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT4, 4 * sizeof(float), count);
     for (size_t i = 0; points && i < count; i++) {
         put_local(points + 4 * i, balls[i].centre, origin, scale);
         points[4 * i + 3] = (float)(balls[i].radius * scale);
@@ -136,9 +138,15 @@ dem_status dem_ray_commit(dem_ray_scene *scene, dem_error *error)
 
 static struct RTCRay embree_ray(const dem_ray *ray)
 {
-    return (struct RTCRay){.org_x = ray->origin[0], .org_y = ray->origin[1], .org_z = ray->origin[2],
-                           .tnear = ray->near, .dir_x = ray->direction[0], .dir_y = ray->direction[1],
-                           .dir_z = ray->direction[2], .tfar = ray->far, .mask = ~0u};
+    return (struct RTCRay){.org_x = ray->origin[0],
+                           .org_y = ray->origin[1],
+                           .org_z = ray->origin[2],
+                           .tnear = ray->near,
+                           .dir_x = ray->direction[0],
+                           .dir_y = ray->direction[1],
+                           .dir_z = ray->direction[2],
+                           .tfar = ray->far,
+                           .mask = ~0u};
 }
 
 bool dem_ray_closest(const dem_ray_scene *scene, const dem_ray *ray, dem_ray_hit *hit)
