@@ -5,7 +5,7 @@
 #include "math/vec.h"
 #include "mesh/polygon.h"
 
-enum { MOST = 12000 };
+enum { MOST = 5000 };
 
 typedef struct cut {
     dem_vec3 vertices[MOST];

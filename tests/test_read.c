@@ -124,25 +124,37 @@ static void what_cannot_be_opened_is_refused(void **state)
     remove_file(&at);
 }
 
-static bool stop_at_once(void *user, const char *what, double fraction)
+typedef struct steps {
+    int calls, stop_at;
+    double last;
+} steps;
+
+static bool step(void *user, const char *what, double fraction)
 {
-    int *calls = user;
-    check(what && fraction >= 0 && fraction <= 1);
-    return ++*calls >= 3;
+    steps *s = user;
+    check(what && fraction >= s->last && fraction <= 1);
+    s->last = fraction;
+    return ++s->calls == s->stop_at;
 }
 
-static void reading_can_be_interrupted(void **state)
+static void reading_tells_its_progress_and_can_be_interrupted(void **state)
 {
     (void)state;
     dem_buffer text = {0};
     for (int i = 0; i < 400000; i++)
         dem_buffer_text(&text, "v 1 2 3\n");
-    int calls = 0;
-    dem_ctx ctx = {.progress = stop_at_once, .user = &calls};
+    for (int i = 0; i < 400000; i++)
+        dem_buffer_text(&text, "f 1 2 3\n");
+    steps all = {0}, some = {.stop_at = 3};
+    dem_ctx ctx = {.progress = step, .user = &all};
     dem_mesh mesh;
     dem_error error;
+    check_ok(dem_read_obj(&ctx, "long.obj", text.data, text.size, &mesh, &error), error);
+    check(all.calls == 12 && all.last > 0.9);  // every 65536 vertices and triangles
+    dem_mesh_free(&mesh);
+    ctx.user = &some;
     check(dem_read_obj(&ctx, "long.obj", text.data, text.size, &mesh, &error) == DEM_INTERRUPTED);
-    check(error.code == DEM_INTERRUPTED && calls == 3 && !mesh.vertices);
+    check(error.code == DEM_INTERRUPTED && some.calls == 3 && !mesh.vertices);
     dem_buffer_release(&text);
 }
 
@@ -161,7 +173,7 @@ static void a_german_locale_changes_nothing(void **state)
     dem_error error;
     heard all;
     // more digits than the short way of reading a number takes, and the exact cube beside
-    static const char *const text = CUBE_OBJ "v 0.1234567890123456789 2.5e-3 1e300\nv 1,5 0 0\n";
+    static const char *const text = CUBE_OBJ "v 0.1234567890123456789 2.5e-3 1e30\nv 1,5 0 0\n";
     dem_status status = parse("cube.obj", text, strlen(text) - strlen("v 1,5 0 0\n"), &all, &mesh, &error);
     double read = mesh.vertices ? mesh.vertices[8].x : 0;
     dem_mesh_free(&mesh);
@@ -229,7 +241,7 @@ int main(void)
         cmocka_unit_test(what_is_no_mesh_is_refused_by_what_it_is),
         cmocka_unit_test(a_file_and_standard_input_give_the_same_mesh),
         cmocka_unit_test(what_cannot_be_opened_is_refused),
-        cmocka_unit_test(reading_can_be_interrupted),
+        cmocka_unit_test(reading_tells_its_progress_and_can_be_interrupted),
         cmocka_unit_test(a_german_locale_changes_nothing),
         cmocka_unit_test(a_copy_is_equal_and_its_own),
         cmocka_unit_test(real_grains_are_read),

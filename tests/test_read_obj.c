@@ -106,6 +106,7 @@ static void what_is_wrong_is_said_with_its_line(void **state)
         {CUBE_OBJ "f 1,2,3\n", 15, "blanks instead of commas"},
         {"v nan 0 0\n" CUBE_OBJ, 1, "vertex 1 is not finite"},
         {CUBE_OBJ "v 0 -inf 0\n", 15, "vertex 9 is not finite"},
+        {CUBE_OBJ "v 0 0 -1e100\n", 15, "vertex 9 is not finite (nan, inf or beyond 1e60)"},
         {"# x\r\n" CUBE_VERTICES "v 1e400 0 0\n" CUBE_FACES, 10, "vertex 9 is not finite"},
         {"v 3,14 2,5 1,0\n" CUBE_OBJ, 1, "'3,14' has a comma; write numbers with a decimal point"},
         {"v 1 2\n" CUBE_OBJ, 1, "the line ends where a number should stand"},

@@ -11,6 +11,7 @@
 #include "base/memory.h"
 #include "mesh/guard.h"
 #include "mesh/read.h"
+#include "mesh/reader.h"
 
 enum { HEAD_MARK = 0x64656d31, LOOK_BYTES = 4096 };
 
@@ -85,8 +86,8 @@ static dem_status receive_mesh(dem_guard *guard, const import_head *head, const 
         !dem_guard_read(guard, mesh->triangles, head->triangles * 3 * sizeof *mesh->triangles))
         return DEM_FAILED;  // the guard knows why
     for (size_t i = 0; i < head->vertices; i++)
-        if (!isfinite(mesh->vertices[i].x) || !isfinite(mesh->vertices[i].y) || !isfinite(mesh->vertices[i].z))
-            return refuse(error, name, "a vertex is not finite");
+        if (!point_is_usable(mesh->vertices[i]))
+            return refuse(error, name, "a vertex is not finite (nan, inf or beyond 1e60)");
     for (size_t i = 0; i < 3 * head->triangles; i++)
         if (mesh->triangles[i] >= head->vertices)
             return refuse(error, name, "a face refers to a vertex that does not exist");

@@ -138,7 +138,6 @@ static void clip_ears(polygon *p, const uint32_t *corners, uint32_t count, uint3
             continue;
         }
         triangles = put(triangles, corners[c->before], corners[at], corners[c->after]);
-        unblock(p, at);
         p->corners[c->before].after = c->after;
         p->corners[c->after].before = c->before;
         look_again(p, c->before);

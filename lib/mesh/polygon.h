@@ -4,8 +4,8 @@
 
 #include "math/vec.h"
 
-/// Concave polygons above this are refused: ear clipping takes time with the square of the corners.
-enum { DEM_POLYGON_MOST_CORNERS = 10000 };
+/// Concave polygons above this are refused: ear clipping takes time with the square of the corners (here 20 ms).
+enum { DEM_POLYGON_MOST_CORNERS = 4096 };
 
 /// Work space kept from polygon to polygon; zero-initialise.
 typedef struct dem_polygon_work {

@@ -27,7 +27,7 @@ static dem_status read_binary_facet(dem_reader *r)
     dem_mesh *mesh = r->mesh;
     for (const char *at = r->at + STL_NORMAL; at < r->at + STL_NORMAL + 36; at += 12) {
         dem_vec3 p = {little_float(at), little_float(at + 4), little_float(at + 8)};
-        if (!isfinite(p.x) || !isfinite(p.y) || !isfinite(p.z))
+        if (!point_is_usable(p))
             return dem_reader_fail(r, "triangle %zu (byte %td) has a corner that is not finite; the file is damaged, "
                                       "export it again", mesh->triangle_count + 1, at - r->bytes);
         mesh->triangles[mesh->vertex_count] = (uint32_t)mesh->vertex_count;

@@ -9,7 +9,7 @@
 
 #include "base/memory.h"
 
-enum { PROGRESS_EVERY = 1 << 16 };
+enum { PROGRESS_EVERY = 1 << 16 };  // vertices or triangles
 
 dem_reader dem_reader_begin(const dem_ctx *ctx, const char *name, const char *bytes, size_t size, dem_mesh *mesh,
                             dem_error *error)
@@ -186,9 +186,9 @@ static dem_status go_on(const dem_reader *r)
 dem_status dem_reader_vertex(dem_reader *r, dem_vec3 p)
 {
     dem_mesh *mesh = r->mesh;
-    if (!isfinite(p.x) || !isfinite(p.y) || !isfinite(p.z))
-        return dem_reader_fail(r, "vertex %zu is not finite (nan, inf or beyond 1e308); correct it or export the mesh "
-                                  "again", mesh->vertex_count + 1);
+    if (!point_is_usable(p))
+        return dem_reader_fail(r, "vertex %zu is not finite (nan, inf or beyond 1e60); correct it or export the mesh again",
+                               mesh->vertex_count + 1);
     if (mesh->vertex_count == UINT32_MAX)
         return dem_reader_fail(r, "more than %" PRIu32 " vertices; reduce the mesh first", UINT32_MAX);
     if (!dem_grow(&mesh->vertices, &r->vertex_capacity, mesh->vertex_count, sizeof *mesh->vertices))
@@ -244,5 +244,6 @@ dem_status dem_reader_face(dem_reader *r)
     if (status != DEM_OK)
         return dem_fail_memory(r->error);
     mesh->triangle_count += count - 2;
-    return r->face_count % PROGRESS_EVERY ? DEM_OK : go_on(r);
+    bool rest = used / 3 / PROGRESS_EVERY == mesh->triangle_count / PROGRESS_EVERY;
+    return rest ? DEM_OK : go_on(r);
 }

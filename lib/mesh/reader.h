@@ -70,6 +70,12 @@ dem_status dem_reader_corner(dem_reader *r, int64_t index, int64_t first);
 /// Ends the face: cuts it into triangles and adds them.
 dem_status dem_reader_face(dem_reader *r);
 
+/// Finite, and small enough for its fifth power (moments of inertia) to be so.
+static inline bool point_is_usable(dem_vec3 p)
+{
+    return fabs(p.x) <= 1e60 && fabs(p.y) <= 1e60 && fabs(p.z) <= 1e60;
+}
+
 static inline bool text_is_blank(char c)
 {
     return c == ' ' || c == '\t' || c == '\v' || c == '\f';

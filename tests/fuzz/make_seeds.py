@@ -1,0 +1,54 @@
+#!/usr/bin/python3
+"""Writes small valid meshes to start the fuzzers from: make_seeds.py FOLDER -> FOLDER/{stl,obj,ply,off,sniff}/"""
+import os
+import struct
+import sys
+
+corners = [(0, 0, 0), (1, 0, 0), (1, 1, 0), (0, 1, 0), (0, 0, 1), (1, 0, 1), (1, 1, 1), (0, 1, 1)]
+sides = [(3, 2, 1, 0), (4, 5, 6, 7), (0, 1, 5, 4), (1, 2, 6, 5), (2, 3, 7, 6), (3, 0, 4, 7)]
+triangles = [t for s in sides for t in ((s[0], s[1], s[2]), (s[0], s[2], s[3]))]
+comb = [(0, 0), (5, 0), (5, 2), (4, 2), (4, 1), (3, 1), (3, 2), (2, 2), (2, 1), (1, 1), (1, 2), (0, 2)]
+
+
+def stl_binary():
+    data = b''.join(struct.pack('<12fH', 0, 0, 0, *[x for i in t for x in corners[i]], 0) for t in triangles)
+    return bytes(80) + struct.pack('<I', len(triangles)) + data
+
+
+def stl_text():
+    facet = 'facet normal 0 0 1\n outer loop\n%s endloop\nendfacet\n'
+    return 'solid a\n' + ''.join(facet % ''.join('  vertex %g %g %g\n' % corners[i] for i in t) for t in triangles) + \
+        'endsolid a\n'
+
+
+def ply(form, order, number, length):
+    head = 'ply\nformat %s 1.0\ncomment c\nelement vertex 8\n' % form
+    head += ''.join('property %s %s\n' % (number[0], axis) for axis in 'xyz') + 'property uchar red\n'
+    head += 'element face 6\nproperty list %s int vertex_indices\nelement edge 1\nproperty int a\nend_header\n' % length[0]
+    if form == 'ascii':
+        body = ''.join('%g %g %g 9\n' % c for c in corners) + ''.join('4 %d %d %d %d\n' % s for s in sides) + '7\n'
+        return (head + body).encode()
+    body = b''.join(struct.pack(order + '3' + number[1] + 'B', *c, 9) for c in corners)
+    return head.encode() + body + b''.join(struct.pack(order + length[1] + '4i', 4, *s) for s in sides) + \
+        struct.pack(order + 'i', 7)
+
+
+obj = ''.join('v %g %g %g\n' % c for c in corners)
+seeds = {
+    'stl': [stl_binary(), stl_text(), stl_text().replace('\n', '\r\n').upper()],
+    'obj': [obj + ''.join('f %d %d %d %d\n' % tuple(i + 1 for i in s) for s in sides),
+            '# c\nmtllib a\no b\n' + obj + 'vt 0 0\nvn 0 0 1\n' +
+            ''.join('f %d/1/1 %d//1 %d/1 \\\n%d\n' % tuple(i - 8 for i in s) for s in sides) + 'l 1 2\n',
+            ''.join('v %g %g 0\n' % c for c in comb) + 'f ' + ' '.join(str(i + 1) for i in range(len(comb)))],
+    'ply': [ply('ascii', '', ('float', 'f'), ('uchar', 'B')), ply('binary_little_endian', '<', ('float', 'f'), ('uchar', 'B')),
+            ply('binary_big_endian', '>', ('double', 'd'), ('int', 'i'))],
+    'off': ['OFF\n8 6 12\n' + ''.join('%g %g %g\n' % c for c in corners) + ''.join('4 %d %d %d %d\n' % s for s in sides),
+            '# c\nSTCNOFF 12 1 0\n' + ''.join('%g %g 0 1 1 1\n' % c for c in comb) + '12 0 1 2 3 4 5 6 7 8 9 10 11 255 0 0'],
+}
+seeds = {name: [s if isinstance(s, bytes) else s.encode() for s in some] for name, some in seeds.items()}
+seeds['sniff'] = [b'd' + s for some in seeds.values() for s in some]
+for name, some in seeds.items():
+    os.makedirs(os.path.join(sys.argv[1], name), exist_ok=True)
+    for i, seed in enumerate(some):
+        with open(os.path.join(sys.argv[1], name, 'seed%d' % i), 'wb') as file:
+            file.write(seed)
