@@ -42,7 +42,8 @@ static inline dem_status parse(const char *name, const char *bytes, size_t size,
 }
 
 /// The unit cube, maybe with more vertices than it needs, with `warnings` lines of warning.
-static inline void check_cube_(const char *name, const char *bytes, size_t size, int warnings, const char *file, int line)
+static inline void check_cube_(const char *name, const char *bytes, size_t size, int warnings, const char *file,
+                               int line)
 {
     dem_mesh mesh;
     dem_error error;
@@ -72,17 +73,18 @@ static inline void check_refused_(const char *name, const char *bytes, size_t si
     dem_error error;
     heard all;
     dem_status status = parse(name, bytes, size, &all, &mesh, &error);
-    if (status != DEM_BAD_INPUT || error.code != DEM_BAD_INPUT || error.line != at_line || strcmp(error.file, name) != 0 ||
-        !strstr(error.text, words) || !strchr(error.text, ';') || strchr(error.text, '\n')) {
+    if (status != DEM_BAD_INPUT || error.code != DEM_BAD_INPUT || error.line != at_line ||
+        strcmp(error.file, name) != 0 || !strstr(error.text, words) || !strchr(error.text, ';') ||
+        strchr(error.text, '\n')) {
         print_error("status %d: %s:%ld: %s\nwant line %ld: %s\n", status, error.file, error.line, error.text, at_line,
                     words);
         _fail(file, line);
     }
     check_true_(!mesh.vertices && !mesh.triangles && !mesh.vertex_count, "an empty mesh", file, line);
 }
-#define check_refused(name, bytes, size, at_line, words) \
+#define check_refused(name, bytes, size, at_line, words)                                                               \
     check_refused_((name), (bytes), (size), (at_line), (words), __FILE__, __LINE__)
-#define check_refused_text(name, text, at_line, words) \
+#define check_refused_text(name, text, at_line, words)                                                                 \
     check_refused_((name), (text), strlen(text), (at_line), (words), __FILE__, __LINE__)
 
 /// The text with every `from` replaced, to be freed.
@@ -104,7 +106,8 @@ static inline char *replaced(const char *text, const char *from, const char *to)
 
 static const dem_vec3 cube_corners[8] = {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0},
                                          {0, 0, 1}, {1, 0, 1}, {1, 1, 1}, {0, 1, 1}};
-static const int cube_sides[6][4] = {{3, 2, 1, 0}, {4, 5, 6, 7}, {0, 1, 5, 4}, {1, 2, 6, 5}, {2, 3, 7, 6}, {3, 0, 4, 7}};
+static const int cube_sides[6][4] = {{3, 2, 1, 0}, {4, 5, 6, 7}, {0, 1, 5, 4},
+                                     {1, 2, 6, 5}, {2, 3, 7, 6}, {3, 0, 4, 7}};
 static const int quad_halves[2][3] = {{0, 1, 2}, {0, 2, 3}};
 
 #endif

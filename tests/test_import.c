@@ -115,7 +115,8 @@ static dem_buffer gltf(const char *nodes, int mode, const char *uri)
     dem_buffer out = {0};
     dem_buffer_text(&out, "{\"asset\":{\"version\":\"2.0\"},\"scene\":0,\"scenes\":[{\"nodes\":[0]}],\"nodes\":");
     dem_buffer_text(&out, nodes);
-    dem_buffer_print(&out, ",\"meshes\":[{\"primitives\":[{\"attributes\":{\"POSITION\":0},\"indices\":1,\"mode\":%d}]}],", mode);
+    dem_buffer_print(
+        &out, ",\"meshes\":[{\"primitives\":[{\"attributes\":{\"POSITION\":0},\"indices\":1,\"mode\":%d}]}],", mode);
     dem_buffer_text(&out, "\"accessors\":[{\"bufferView\":0,\"componentType\":5126,\"count\":8,\"type\":\"VEC3\","
                           "\"min\":[0,0,0],\"max\":[1,1,1]},"
                           "{\"bufferView\":1,\"componentType\":5123,\"count\":36,\"type\":\"SCALAR\"}],"
@@ -193,8 +194,9 @@ static void put_stored(dem_buffer *out, dem_buffer *table, const char *name, con
 static dem_buffer three_mf(void)
 {
     dem_buffer model = {0}, out = {0}, table = {0};
-    dem_buffer_text(&model, "<?xml version=\"1.0\"?><model unit=\"millimeter\" xmlns=\"http://schemas.microsoft.com/"
-                            "3dmanufacturing/core/2015/02\"><resources><object id=\"1\" type=\"model\"><mesh><vertices>");
+    dem_buffer_text(&model,
+                    "<?xml version=\"1.0\"?><model unit=\"millimeter\" xmlns=\"http://schemas.microsoft.com/"
+                    "3dmanufacturing/core/2015/02\"><resources><object id=\"1\" type=\"model\"><mesh><vertices>");
     for (int i = 0; i < 8; i++)
         dem_buffer_print(&model, "<vertex x=\"%d\" y=\"%d\" z=\"%d\"/>", (int)cube_corners[i].x, (int)cube_corners[i].y,
                          (int)cube_corners[i].z);
@@ -203,12 +205,14 @@ static dem_buffer three_mf(void)
         dem_buffer_print(&model, "<triangle v1=\"%d\" v2=\"%d\" v3=\"%d\"/>", cube_sides[i / 2][quad_halves[i % 2][0]],
                          cube_sides[i / 2][quad_halves[i % 2][1]], cube_sides[i / 2][quad_halves[i % 2][2]]);
     dem_buffer_text(&model, "</triangles></mesh></object></resources><build><item objectid=\"1\"/></build></model>");
-    put_stored(&out, &table, "[Content_Types].xml",
-               "<?xml version=\"1.0\"?><Types xmlns=\"http://schemas.openxmlformats.org/package/2006/content-types\"/>");
-    put_stored(&out, &table, "_rels/.rels",
-               "<?xml version=\"1.0\"?><Relationships xmlns=\"http://schemas.openxmlformats.org/package/2006/relationships\">"
-               "<Relationship Id=\"r\" Target=\"/3D/3dmodel.model\" "
-               "Type=\"http://schemas.microsoft.com/3dmanufacturing/2013/01/3dmodel\"/></Relationships>");
+    put_stored(
+        &out, &table, "[Content_Types].xml",
+        "<?xml version=\"1.0\"?><Types xmlns=\"http://schemas.openxmlformats.org/package/2006/content-types\"/>");
+    put_stored(
+        &out, &table, "_rels/.rels",
+        "<?xml version=\"1.0\"?><Relationships xmlns=\"http://schemas.openxmlformats.org/package/2006/relationships\">"
+        "<Relationship Id=\"r\" Target=\"/3D/3dmodel.model\" "
+        "Type=\"http://schemas.microsoft.com/3dmanufacturing/2013/01/3dmodel\"/></Relationships>");
     put_stored(&out, &table, "3D/3dmodel.model", model.data);
     size_t offset = out.size;
     dem_buffer_bytes(&out, table.data, table.size);
@@ -224,20 +228,23 @@ static dem_buffer three_mf(void)
 static dem_buffer collada(void)
 {
     dem_buffer out = {0};
-    dem_buffer_text(&out, "<?xml version=\"1.0\"?><COLLADA xmlns=\"http://www.collada.org/2005/11/COLLADASchema\" "
-                          "version=\"1.4.1\"><asset><unit name=\"meter\" meter=\"1\"/><up_axis>Z_UP</up_axis></asset>"
-                          "<library_geometries><geometry id=\"g\"><mesh><source id=\"p\"><float_array id=\"a\" count=\"24\">");
+    dem_buffer_text(
+        &out, "<?xml version=\"1.0\"?><COLLADA xmlns=\"http://www.collada.org/2005/11/COLLADASchema\" "
+              "version=\"1.4.1\"><asset><unit name=\"meter\" meter=\"1\"/><up_axis>Z_UP</up_axis></asset>"
+              "<library_geometries><geometry id=\"g\"><mesh><source id=\"p\"><float_array id=\"a\" count=\"24\">");
     for (int i = 0; i < 8; i++)
         dem_buffer_print(&out, "%d %d %d ", (int)cube_corners[i].x, (int)cube_corners[i].y, (int)cube_corners[i].z);
-    dem_buffer_text(&out, "</float_array><technique_common><accessor source=\"#a\" count=\"8\" stride=\"3\">"
-                          "<param name=\"X\" type=\"float\"/><param name=\"Y\" type=\"float\"/><param name=\"Z\" type=\"float\"/>"
-                          "</accessor></technique_common></source><vertices id=\"v\"><input semantic=\"POSITION\" source=\"#p\"/>"
-                          "</vertices><triangles count=\"12\"><input semantic=\"VERTEX\" source=\"#v\" offset=\"0\"/><p>");
+    dem_buffer_text(
+        &out, "</float_array><technique_common><accessor source=\"#a\" count=\"8\" stride=\"3\">"
+              "<param name=\"X\" type=\"float\"/><param name=\"Y\" type=\"float\"/><param name=\"Z\" type=\"float\"/>"
+              "</accessor></technique_common></source><vertices id=\"v\"><input semantic=\"POSITION\" source=\"#p\"/>"
+              "</vertices><triangles count=\"12\"><input semantic=\"VERTEX\" source=\"#v\" offset=\"0\"/><p>");
     for (int i = 0; i < 36; i++)
         dem_buffer_print(&out, "%d ", cube_sides[i / 6][quad_halves[i / 3 % 2][i % 3]]);
-    dem_buffer_text(&out, "</p></triangles></mesh></geometry></library_geometries><library_visual_scenes><visual_scene id=\"s\">"
-                          "<node id=\"n\"><instance_geometry url=\"#g\"/></node></visual_scene></library_visual_scenes>"
-                          "<scene><instance_visual_scene url=\"#s\"/></scene></COLLADA>");
+    dem_buffer_text(
+        &out, "</p></triangles></mesh></geometry></library_geometries><library_visual_scenes><visual_scene id=\"s\">"
+              "<node id=\"n\"><instance_geometry url=\"#g\"/></node></visual_scene></library_visual_scenes>"
+              "<scene><instance_visual_scene url=\"#s\"/></scene></COLLADA>");
     return out;
 }
 
@@ -329,8 +336,10 @@ static void nodes_place_their_meshes(void **state)
     if (!DEM_ASSIMP)
         skip();
     // doubled, turned by 90 degrees about z, shifted: the float quaternion costs 1e-7
-    put_gltf(at, "[{\"scale\":[2,2,2],\"translation\":[5,0,0],\"children\":[1]},"
-                 "{\"mesh\":0,\"rotation\":[0,0,0.70710678,0.70710678],\"translation\":[0,1,0]}]", TRIANGLES);
+    put_gltf(at,
+             "[{\"scale\":[2,2,2],\"translation\":[5,0,0],\"children\":[1]},"
+             "{\"mesh\":0,\"rotation\":[0,0,0.70710678,0.70710678],\"translation\":[0,1,0]}]",
+             TRIANGLES);
     dem_solid solid = imported_solid(at, 0);
     check_close(solid.volume, 8, 1e-6);
     check_vec(solid.centre, ((dem_vec3){4, 3, 1}), 1e-6);

@@ -4,7 +4,8 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-#define CUBE_OFF "OFF\n8 6 12\n0 0 0\n1 0 0\n1 1 0\n0 1 0\n0 0 1\n1 0 1\n1 1 1\n0 1 1\n" \
+#define CUBE_OFF                                                                                                       \
+    "OFF\n8 6 12\n0 0 0\n1 0 0\n1 1 0\n0 1 0\n0 0 1\n1 0 1\n1 1 1\n0 1 1\n"                                            \
     "4 3 2 1 0\n4 4 5 6 7\n4 0 1 5 4\n4 1 2 6 5\n4 2 3 7 6\n4 3 0 4 7\n"
 
 static void content_decides_and_a_wrong_name_is_one_warning(void **state)
@@ -32,11 +33,15 @@ static void what_is_no_mesh_is_refused_by_what_it_is(void **state)
         size_t size;
         const char *words;
     } cases[] = {
-        {"letter.obj", "Dear colleague,\nplease find the grain attached.\n", 0, "not a mesh; supported: STL, OBJ, PLY, OFF"},
+        {"letter.obj", "Dear colleague,\nplease find the grain attached.\n", 0,
+         "not a mesh; supported: STL, OBJ, PLY, OFF"},
         {"picture.stl", "\x89PNG\r\n\x1a\n\0\0\0\15IHDR", 16, "is a PNG picture, not a mesh; supported: STL"},
         {"picture.obj", "\xff\xd8\xff\xe0", 4, "is a JPEG picture"},
         {"grain.stl.gz", "\x1f\x8b\x08\0", 4, "is compressed; unpack it"},
-        {"grain.obj", "\xff\xfev\0 \0" "1\0", 8, "is UTF-16 text; save it as UTF-8"},
+        {"grain.obj",
+         "\xff\xfev\0 \0"
+         "1\0",
+         8, "is UTF-16 text; save it as UTF-8"},
         {"cloud.xyz", "# x y z\n0 0 1\n0.5 0 1e-3\n", 0, "not a mesh but a cloud of points"},
         {"cloud.txt", "0,5 0,1 0,2\n", 0, "not a mesh but a cloud of points"},
         {"blank.obj", " \n\n\t", 0, "not a mesh; supported"},
@@ -101,7 +106,8 @@ static void what_cannot_be_opened_is_refused(void **state)
     put_file(&at, "empty.obj", "");
     dem_mesh mesh;
     dem_error error;
-    static const char *const words[] = {"file is empty", "is a directory", "no such file", "link to a file that does not"};
+    static const char *const words[] = {"file is empty", "is a directory", "no such file",
+                                        "link to a file that does not"};
     char path[128];
     for (int i = 0; i < 4; i++) {
         snprintf(path, sizeof path, "%s", i == 0 ? at.path : at.folder);
@@ -217,10 +223,8 @@ static void real_grains_are_read(void **state)
         size_t vertices, triangles;
         double volume;  // of the list beside them
     } grains[] = {
-        {SHARED_MESH("castalia.obj"), 2048, 4092, 0.6678},
-        {SHARED_MESH("human_femur.stl"), 41256, 13752, 1.256e5},
-        {SHARED_MESH("offroad_rock2.obj"), 360, 716, 7.568},
-        {SHARED_MESH("regolith_1.obj"), 242, 480, 8.322e-8},
+        {SHARED_MESH("castalia.obj"), 2048, 4092, 0.6678},     {SHARED_MESH("human_femur.stl"), 41256, 13752, 1.256e5},
+        {SHARED_MESH("offroad_rock2.obj"), 360, 716, 7.568},   {SHARED_MESH("regolith_1.obj"), 242, 480, 8.322e-8},
         {SHARED_MESH("shpsg_sand_030.stl"), 960, 320, 0.5008},
     };
     for (size_t i = 0; i < sizeof grains / sizeof *grains; i++) {

@@ -8,13 +8,15 @@ static void the_forms_of_an_obj_all_give_the_cube(void **state)
         CUBE_FACES CUBE_VERTICES,  // faces before their vertices
         "\xef\xbb\xbf" CUBE_OBJ,
         "# a comment with a \\\n\n   \n\to cube\ng sides\ns 1\nusemtl C:\\stone\\\nmtllib a b.mtl\n" CUBE_OBJ,
-        "vt 0 0\nvt 1 0\nvn 0 0 1\n" CUBE_VERTICES "f 4/1 3/2 2/1 1/1\nf 5//1 6//1 7//1 8//1\nf 1/1/1 2/2/1 6/1/1 5/2/1\n"
+        "vt 0 0\nvt 1 0\nvn 0 0 1\n" CUBE_VERTICES
+        "f 4/1 3/2 2/1 1/1\nf 5//1 6//1 7//1 8//1\nf 1/1/1 2/2/1 6/1/1 5/2/1\n"
         "f 2/ 3/ 7/ 6/\nf 3 4 8 7\nf 4 1 5 8 # the last one\n",
         CUBE_VERTICES "f 4 3 \\\n2 1\nf 5 6 7 8\nf 1 2\\\n  6 5 \nf \\\n2 3 7 6\nf 3 4 8 7\nf 4 1 5 8\\\n",
         "v 0 0 \\\n0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv 0 0 1\nv 1 0 1\nv 1 1 1 0.5 \\\n0.5 0.5\nv 0 1 1\n" CUBE_FACES,
         CUBE_VERTICES "f -5 -6 -7 -8\nf -4 -3 -2 -1\nf 1 2 6 5\nf -7 -6 7 6\nf 3 4 8 7\nf 4 1 5 8\n",
         "v 1e3 1e3 1e3\n" CUBE_VERTICES "f 5 4 3 2\nf 6 7 8 9\nf 2 3 7 6\nf 3 4 8 7\nf 4 5 9 8\nf 5 2 6 9\n",
-        "v 0 0 0 1 0 0\nv 1. 0. -0. 1\nv 1e0 1.0E+00 0e5\nv 0 1 0\nv .0 +0 1\nv 1 0 1\nv 1 1 1\nv 0 1 1 1 1 1 1\n" CUBE_FACES,
+        "v 0 0 0 1 0 0\nv 1. 0. -0. 1\nv 1e0 1.0E+00 0e5\nv 0 1 0\nv .0 +0 1\nv 1 0 1\nv 1 1 1\nv 0 1 1 1 1 1 "
+        "1\n" CUBE_FACES,
         CUBE_VERTICES "f 4 4 3 2 1 4\nf 5 6 7 8\nf 1 2 6 5\nf 2 3 7 6\nf 3 4 8 7\nf 4 1 5 8\n",  // repeated corners
     };
     for (size_t i = 0; i < sizeof forms / sizeof *forms; i++)
@@ -24,7 +26,7 @@ static void the_forms_of_an_obj_all_give_the_cube(void **state)
 static void line_ends_blanks_and_a_missing_last_newline_do_not_matter(void **state)
 {
     (void)state;
-    static const char *const changes[][2] = {{"\n", "\r\n"}, {"\n", "\r"}, {"\n", " \t\n"}, {" ", "\t"},
+    static const char *const changes[][2] = {{"\n", "\r\n"}, {"\n", "\r"},   {"\n", " \t\n"},    {" ", "\t"},
                                              {" ", "   "},   {"\n", "\n\n"}, {"\n", "\n# x\r\n"}};
     for (size_t i = 0; i < sizeof changes / sizeof *changes; i++) {
         char *text = replaced(CUBE_OBJ, changes[i][0], changes[i][1]);
@@ -54,16 +56,17 @@ static void concave_faces_are_filled(void **state)
 {
     (void)state;
     // the base is a comb whose fan would leave it: a prism of area 5 over the height 2
-    const char *comb = "v 0 0 0\nv 5 0 0\nv 5 2 0\nv 4 2 0\nv 4 0.5 0\nv 1 0.5 0\nv 1 2 0\nv 0 2 0\n"
-                       "v 0 0 2\nv 5 0 2\nv 5 2 2\nv 4 2 2\nv 4 0.5 2\nv 1 0.5 2\nv 1 2 2\nv 0 2 2\n"
-                       "f 8 7 6 5 4 3 2 1\nf 9 10 11 12 13 14 15 16\n"
-                       "f 1 2 10 9\nf 2 3 11 10\nf 3 4 12 11\nf 4 5 13 12\nf 5 6 14 13\nf 6 7 15 14\nf 7 8 16 15\nf 8 1 9 16\n";
+    const char *comb =
+        "v 0 0 0\nv 5 0 0\nv 5 2 0\nv 4 2 0\nv 4 0.5 0\nv 1 0.5 0\nv 1 2 0\nv 0 2 0\n"
+        "v 0 0 2\nv 5 0 2\nv 5 2 2\nv 4 2 2\nv 4 0.5 2\nv 1 0.5 2\nv 1 2 2\nv 0 2 2\n"
+        "f 8 7 6 5 4 3 2 1\nf 9 10 11 12 13 14 15 16\n"
+        "f 1 2 10 9\nf 2 3 11 10\nf 3 4 12 11\nf 4 5 13 12\nf 5 6 14 13\nf 6 7 15 14\nf 7 8 16 15\nf 8 1 9 16\n";
     dem_mesh mesh;
     dem_error error;
     heard all;
     check_ok(parse("comb.obj", comb, strlen(comb), &all, &mesh, &error), error);
     dem_solid solid = dem_mesh_solid(&mesh);
-    check_close(solid.volume, 11, 1e-14);           // (5 x 0.5 + 2 x 1.5) x 2
+    check_close(solid.volume, 11, 1e-14);              // (5 x 0.5 + 2 x 1.5) x 2
     check_close(solid.area, 2 * 5.5 + 2 * 17, 1e-14);  // triangles outside the face would add to it
     dem_mesh_free(&mesh);
 }

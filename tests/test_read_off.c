@@ -15,8 +15,8 @@ static void the_forms_of_an_off_all_give_the_cube(void **state)
         "COFF\n8 6 12\n0 0 0 255 0 0 1\n1 0 0 .5 .5 .5 1\n1 1 0\n0 1 0\n0 0 1\n1 0 1\n1 1 1\n0 1 1\n"
         "4 3 2 1 0 255 0 0\n4 4 5 6 7 0.1 0.2 0.3 0.4\n4 0 1 5 4 # red\n4 1 2 6 5\n4 2 3 7 6\n4 3 0 4 7\n",
         "STCNOFF 8 6 12\n" VERTICES FACES,
-        "NOFF\n8 6 12\n0 0 0 0 0 1\n1 0 0 0 0 1\n1 1 0 0 0 1\n0 1 0 0 0 1\n0 0 1 0 0 1\n1 0 1 0 0 1\n1 1 1 0 0 1\n0 1 1 0 0 1\n"
-        FACES,
+        "NOFF\n8 6 12\n0 0 0 0 0 1\n1 0 0 0 0 1\n1 1 0 0 0 1\n0 1 0 0 0 1\n0 0 1 0 0 1\n1 0 1 0 0 1\n1 1 1 0 0 1\n0 1 "
+        "1 0 0 1\n" FACES,
     };
     static const char *const ends[] = {"\n", "\r\n", "\r", "\n\n"};
     for (size_t i = 0; i < sizeof forms / sizeof *forms; i++)
@@ -48,7 +48,8 @@ static void what_is_wrong_is_said_with_its_line(void **state)
         long line;
         const char *words;
     } cases[] = {
-        {"OFF\n400000000 1 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n", 2, "header says 400000000 vertices, file has room for 5"},
+        {"OFF\n400000000 1 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n", 2,
+         "header says 400000000 vertices, file has room for 5"},
         {"OFF 3 400000000 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n", 1, "header says 400000000 faces, file has room for 1"},
         {"OFF 3 -1 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n", 1, "negative counts"},
         {"OFF 3\n0 0 0\n", 1, "the line ends where a whole number should stand"},

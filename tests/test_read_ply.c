@@ -92,12 +92,15 @@ static void what_is_not_needed_is_skipped(void **state)
     (void)state;
     for (int form = TEXT; form <= BIG; form++) {
         dem_buffer out = {0};
-        dem_buffer_print(&out, "ply\nformat %s 1.0\nobj_info x\nelement camera 2\nproperty uint8 a\nproperty double b\n"
-                               "element face 6\nproperty float quality\nproperty list uint8 int32 vertex_index\n"
-                               "property list uint8 float texcoord\nelement nothing 400000000\n", forms[form]);
-        dem_buffer_text(&out, "element vertex 8\nproperty double nx\nproperty double x\nproperty list uint8 int16 near\n"
-                              "property double z\nproperty double y\nelement edge 1\nproperty list uint8 int16 ends\n"
-                              "property int32 a\nend_header\n");
+        dem_buffer_print(&out,
+                         "ply\nformat %s 1.0\nobj_info x\nelement camera 2\nproperty uint8 a\nproperty double b\n"
+                         "element face 6\nproperty float quality\nproperty list uint8 int32 vertex_index\n"
+                         "property list uint8 float texcoord\nelement nothing 400000000\n",
+                         forms[form]);
+        dem_buffer_text(&out,
+                        "element vertex 8\nproperty double nx\nproperty double x\nproperty list uint8 int16 near\n"
+                        "property double z\nproperty double y\nelement edge 1\nproperty list uint8 int16 ends\n"
+                        "property int32 a\nend_header\n");
         for (int i = 0; i < 2; i++) {
             put(&out, form, "uint8", 7);
             put(&out, form, "double", 1e300);
@@ -145,9 +148,11 @@ static void a_header_may_end_its_lines_in_any_way(void **state)
         for (int k = 0; k < 3; k++) {
             // the first byte of the data is a line feed: 10 vertices of one byte
             dem_buffer file = {0}, header = {0};
-            dem_buffer_print(&header, "ply\nformat %s 1.0\nelement odd 1\nproperty uint8 a\nelement vertex 8\nproperty float x\n"
-                                      "property float y\nproperty float z\nelement face 6\n"
-                                      "property list uint8 uint8 vertex_indices\nend_header\n", forms[form]);
+            dem_buffer_print(&header,
+                             "ply\nformat %s 1.0\nelement odd 1\nproperty uint8 a\nelement vertex 8\nproperty float x\n"
+                             "property float y\nproperty float z\nelement face 6\n"
+                             "property list uint8 uint8 vertex_indices\nend_header\n",
+                             forms[form]);
             char *text = replaced(header.data, "\n", ends[k]);
             dem_buffer_text(&file, text);
             put(&file, form, "uint8", 10);
@@ -193,7 +198,8 @@ static void what_is_wrong_is_said_with_its_line(void **state)
     } cases[] = {
         {HEAD "element vertex 400000000\n" XYZ FACES(1) "0 0 0\n3 0 0 0\n", 9,
          "header says 400000000 of element 'vertex', file has room for 2"},
-        {THREE FACES(1000) "0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n", 12, "header says 1000 of element 'face', file has room for 4"},
+        {THREE FACES(1000) "0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n", 12,
+         "header says 1000 of element 'face', file has room for 4"},
         {THREE "end_header\n0 0 0\n1 0 0\n0 1 0\n", 0, "3 vertices but no faces"},
         {THREE FACES(0) "0 0 0\n1 0 0\n0 1 0\n", 0, "3 vertices but no faces"},
         {THREE FACES(1) "0 0 0\n1 0 0\n0 1 0\n3 0 1 3\n", 13, "face 1 refers to vertex 3 of 3 (counted from 0)"},
@@ -209,8 +215,8 @@ static void what_is_wrong_is_said_with_its_line(void **state)
         {THREE FACES(1) "0 0 0\n1 0,5 0\n0 1 0\n3 0 1 2\n", 11, "'0,5' has a comma"},
         {THREE FACES(1) "0 0 0\n\n1 0 inf\n0 1 0\n3 0 1 2\n", 12, "vertex 2 is not finite"},
         {THREE FACES(1) "0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n3 2 1 0\n", 13, "8 bytes behind the last element"},
-        {THREE "element tristrips 1\nproperty list int int vertex_indices\nend_header\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n", 9,
-         "triangle strips instead of faces"},
+        {THREE "element tristrips 1\nproperty list int int vertex_indices\nend_header\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n",
+         9, "triangle strips instead of faces"},
         {HEAD "element vertex 3\nproperty float x\nproperty float y\n" FACES(1), 8, "no vertices with x, y and z"},
         {HEAD "element vertex 3\nproperty list uchar float x\n", 4, "coordinates must be single numbers"},
         {THREE "element face 1\nproperty int vertex_indices\nend_header\n", 8, "vertex_indices a list"},
@@ -242,7 +248,8 @@ static void wrong_binary_data_are_named_by_face_and_vertex(void **state)
         memset(file.data + faces + 17 + 1, 0x7f, 4);
         check_refused("bad.ply", file.data, file.size, 0, "face 2 refers to vertex 2139062143 of 8");
         file.data[faces + 17] = (char)255;
-        check_refused("bad.ply", file.data, file.size, 0, "a list of 255 items in element 'face', file has room for 21");
+        check_refused("bad.ply", file.data, file.size, 0,
+                      "a list of 255 items in element 'face', file has room for 21");
         file.data[faces + 17] = 0;
         check_refused("bad.ply", file.data, file.size, 0, "face 2 has 0 corners");
         dem_buffer_release(&file);

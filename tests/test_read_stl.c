@@ -120,8 +120,9 @@ static void thirty_two_bits_far_from_the_origin_are_warned_of(void **state)
         check_ok(parse("far.stl", out.data, out.size, &all, &mesh, &error), error);
         check(all.warnings == far);
         if (far)  // the spacing of floats between 2^19 and 2^20
-            assert_non_null(strstr(all.last, "3.46 across at coordinates of 1e+06, where the 32-bit numbers of the file lie "
-                                             "0.062 apart"));
+            assert_non_null(strstr(all.last,
+                                   "3.46 across at coordinates of 1e+06, where the 32-bit numbers of the file lie "
+                                   "0.062 apart"));
         dem_mesh_free(&mesh);
         dem_buffer_release(&out);
     }
@@ -138,8 +139,8 @@ static void the_forms_of_a_text_stl_all_give_the_cube(void **state)
         {"\xef\xbb\xbfsolid\n\n", "endsolid\n"},
         {"solid one\nendsolid one\nsolid two\n", "endsolid two\nsolid three\nendsolid\n"},
     };
-    static const char *const changes[][2] = {{"\n", "\n"}, {"\n", "\r\n"}, {"\n", "\r"}, {"\n", "\n\n"}, {" ", "\n"},
-                                             {"facet", "FACET"}, {"e", "E"}, {"\n", "\n\t "}};
+    static const char *const changes[][2] = {{"\n", "\n"}, {"\n", "\r\n"},     {"\n", "\r"}, {"\n", "\n\n"},
+                                             {" ", "\n"},  {"facet", "FACET"}, {"e", "E"},   {"\n", "\n\t "}};
     for (size_t i = 0; i < sizeof frames / sizeof *frames; i++) {
         dem_buffer whole = {0};
         dem_buffer_text(&whole, frames[i][0]);

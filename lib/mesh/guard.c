@@ -58,7 +58,7 @@ static void close_all_but(int kept)
 static void set_limits(const dem_guard_limits *limits, double memory)
 {
     limit(RLIMIT_CORE, 0, 0);
-    limit(RLIMIT_FSIZE, 0, 0);  // pipes are not counted
+    limit(RLIMIT_FSIZE, 0, 0);                                    // pipes are not counted
     limit(RLIMIT_CPU, ceil(limits->cpu), ceil(limits->cpu) + 1);  // SIGXCPU at the first, SIGKILL at the second
     if (DEM_GUARD_MEMORY && memory > 0)
         limit(RLIMIT_AS, memory + limits->memory, memory + limits->memory);
@@ -67,7 +67,8 @@ static void set_limits(const dem_guard_limits *limits, double memory)
 _Noreturn static void be_child(int out, const dem_guard_limits *limits, double memory, pid_t parent,
                                void (*work)(void *user, int out), void *user)
 {
-    static const int defaults[] = {SIGINT, SIGTERM, SIGHUP, SIGPIPE, SIGXCPU, SIGXFSZ, SIGABRT, SIGSEGV, SIGBUS, SIGFPE};
+    static const int defaults[] = {SIGINT,  SIGTERM, SIGHUP,  SIGPIPE, SIGXCPU,
+                                   SIGXFSZ, SIGABRT, SIGSEGV, SIGBUS,  SIGFPE};
     for (size_t i = 0; i < sizeof defaults / sizeof *defaults; i++)
         signal(defaults[i], SIG_DFL);
     sigset_t none;
@@ -96,8 +97,8 @@ dem_status dem_guard_start(dem_guard *guard, const dem_ctx *ctx, dem_guard_limit
     pid_t parent = getpid();
     guard->child = fork();
     if (guard->child == 0)
-        be_child(ends[1] > STDERR_FILENO ? ends[1] : fcntl(ends[1], F_DUPFD, STDERR_FILENO + 1), &limits, memory, parent,
-                 work, user);
+        be_child(ends[1] > STDERR_FILENO ? ends[1] : fcntl(ends[1], F_DUPFD, STDERR_FILENO + 1), &limits, memory,
+                 parent, work, user);
     close(ends[1]);
     guard->pipe = ends[0];
     if (guard->child < 0) {
@@ -162,9 +163,11 @@ const char *dem_guard_end(dem_guard *guard)
     if (guard->interrupted)
         snprintf(guard->why, sizeof guard->why, "was interrupted");
     else if (guard->late || number == SIGXCPU)
-        snprintf(guard->why, sizeof guard->why, "took more than %.0f s", guard->late ? guard->limits.wall : guard->limits.cpu);
+        snprintf(guard->why, sizeof guard->why, "took more than %.0f s",
+                 guard->late ? guard->limits.wall : guard->limits.cpu);
     else if (number == SIGABRT || number == SIGKILL)
-        snprintf(guard->why, sizeof guard->why, "gave up (%s, maybe out of memory)", number == SIGABRT ? "abort" : "killed");
+        snprintf(guard->why, sizeof guard->why, "gave up (%s, maybe out of memory)",
+                 number == SIGABRT ? "abort" : "killed");
     else if (number)
         snprintf(guard->why, sizeof guard->why, "crashed (signal %d)", number);
     else

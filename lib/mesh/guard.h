@@ -19,9 +19,9 @@
 #endif
 
 typedef struct dem_guard_limits {
-    double memory;   ///< beyond what the caller has at the start [byte]
-    double cpu;      ///< [s]
-    double wall;     ///< [s]
+    double memory;  ///< beyond what the caller has at the start [byte]
+    double cpu;     ///< [s]
+    double wall;    ///< [s]
 } dem_guard_limits;
 
 typedef struct dem_guard {

@@ -137,9 +137,10 @@ static const char *suffix_by_content(const char *bytes, size_t size)
     static const struct {
         const char *words, *suffix;
         bool first;
-    } signs[] = {{"glTF", "glb", true},        {"Kaydara FBX Binary", "fbx", true}, {"[Content_Types].xml", "3mf", false},
-                 {"3D/3dmodel", "3mf", false}, {"<COLLADA", "dae", false},          {"<amf", "amf", false},
-                 {"<X3D", "x3d", false},       {"\"asset\"", "gltf", false}};
+    } signs[] = {
+        {"glTF", "glb", true},        {"Kaydara FBX Binary", "fbx", true}, {"[Content_Types].xml", "3mf", false},
+        {"3D/3dmodel", "3mf", false}, {"<COLLADA", "dae", false},          {"<amf", "amf", false},
+        {"<X3D", "x3d", false},       {"\"asset\"", "gltf", false}};
     size_t look = size < LOOK_BYTES ? size : LOOK_BYTES;
     for (size_t i = 0; i < sizeof signs / sizeof *signs; i++) {
         size_t length = strlen(signs[i].words), starts = signs[i].first ? 1 : look;
@@ -164,15 +165,18 @@ static dem_status import_other(const dem_ctx *ctx, const char *path, const char 
     const char *content = suffix_by_content(bytes->data, bytes->size);
     dem_import_outcome outcome = DEM_IMPORT_UNKNOWN;
     if (!DEM_ASSIMP && content)
-        return dem_fail_at(error, DEM_UNAVAILABLE, name, 0, "this program was built without assimp, which reads %s; export "
-                           "the mesh as STL, OBJ, PLY or OFF", content);
+        return dem_fail_at(error, DEM_UNAVAILABLE, name, 0,
+                           "this program was built without assimp, which reads %s; export "
+                           "the mesh as STL, OBJ, PLY or OFF",
+                           content);
     if (DEM_ASSIMP && path == name && *suffix && !is_our_suffix(suffix)) {
         dem_import_source source = {.path = path, .suffix = suffix};
         DEM_TRY(import_guarded(ctx, name, &source, bytes->size, &outcome, mesh, error));
     }
     if (outcome == DEM_IMPORT_UNKNOWN && content) {
         if (*suffix)
-            dem_log(ctx, DEM_LOG_WARNING, "content is %s although the name ends in .%s; read as %s", content, suffix, content);
+            dem_log(ctx, DEM_LOG_WARNING, "content is %s although the name ends in .%s; read as %s", content, suffix,
+                    content);
         dem_import_source source = {.bytes = bytes->data, .size = bytes->size, .suffix = content};
         DEM_TRY(import_guarded(ctx, name, &source, bytes->size, &outcome, mesh, error));
     }

@@ -56,8 +56,7 @@ static bool triangle_faces(dem_vec3 a, dem_vec3 b, dem_vec3 c, dem_vec3 normal, 
 
 // all triangles of the fan about the first corner face the same way: right for every polygon that does not
 // meet itself, convex or not, and what other programs make of quads that are not flat
-static bool fan_fits(const dem_vec3 *vertices, const uint32_t *corners, size_t count, dem_vec3 normal,
-                     double tolerance)
+static bool fan_fits(const dem_vec3 *vertices, const uint32_t *corners, size_t count, dem_vec3 normal, double tolerance)
 {
     for (size_t i = 1; i + 1 < count; i++)
         if (!triangle_faces(vertices[corners[0]], vertices[corners[i]], vertices[corners[i + 1]], normal, tolerance))

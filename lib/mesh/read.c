@@ -92,12 +92,16 @@ static const char *known_stranger(const char *bytes, size_t size)
         {"GIF8", "is a GIF picture, not a mesh"},
         {"II*", "is a TIFF picture, not a mesh; make a surface of the image stack first"},
         {"%PDF", "is a PDF document, not a mesh"},
-        {"\x7f" "ELF", "is a program, not a mesh"},
+        {"\x7f"
+         "ELF",
+         "is a program, not a mesh"},
         {"\x1f\x8b", "is compressed; unpack it with gunzip first"},
         {"PK\x03\x04", "is a zip archive; unpack it first"},
         {"glTF", "is a glTF scene, which only the import by assimp reads; export the mesh as STL, OBJ, PLY or OFF"},
         {"BZh", "is compressed; unpack it with bunzip2 first"},
-        {"\xfd" "7zXZ", "is compressed; unpack it with unxz first"},
+        {"\xfd"
+         "7zXZ",
+         "is compressed; unpack it with unxz first"},
         {"\xff\xfe", "is UTF-16 text; save it as UTF-8 or ASCII"},
         {"\xfe\xff", "is UTF-16 text; save it as UTF-8 or ASCII"},
     };
@@ -139,18 +143,21 @@ dem_status dem_mesh_refuse(const char *name, const char *bytes, size_t size, con
 {
     const char *what = known_stranger(bytes, size);
     if (what)
-        return dem_fail_at(error, DEM_BAD_INPUT, name, 0, "%s%s%s", what, strchr(what, ';') ? "" : "; supported: ",
-                           strchr(what, ';') ? "" : supported);
+        return dem_fail_at(error, DEM_BAD_INPUT, name, 0, "%s%s%s", what,
+                           strchr(what, ';') ? "" : "; supported: ", strchr(what, ';') ? "" : supported);
     dem_mesh ignored;
     dem_reader r = dem_reader_begin(NULL, name, bytes, size, &ignored, error);
     bool text = is_text(bytes, size);
     if (text && first_line(&r) && three_numbers(&r))
-        return dem_fail_at(error, DEM_BAD_INPUT, name, 0, "not a mesh but a cloud of points, without faces; make a surface "
-                           "of it first; supported: %s", supported);
+        return dem_fail_at(error, DEM_BAD_INPUT, name, 0,
+                           "not a mesh but a cloud of points, without faces; make a surface "
+                           "of it first; supported: %s",
+                           supported);
     if (!text && size >= STL_HEADER)
-        return dem_fail_at(error, DEM_BAD_INPUT, name, 0, "not a mesh (as binary STL its header would say %zu triangles, "
-                           "the file has room for %zu); supported: %s", stl_header_count(bytes),
-                           (size - STL_HEADER) / STL_FACET, supported);
+        return dem_fail_at(error, DEM_BAD_INPUT, name, 0,
+                           "not a mesh (as binary STL its header would say %zu triangles, "
+                           "the file has room for %zu); supported: %s",
+                           stl_header_count(bytes), (size - STL_HEADER) / STL_FACET, supported);
     return dem_fail_at(error, DEM_BAD_INPUT, name, 0, "not a mesh; supported: %s", supported);
 }
 
@@ -167,9 +174,11 @@ void dem_mesh_warn_precision(const dem_ctx *ctx, const dem_mesh *mesh)
     if (!(size < 1e-4 * far))
         return;
     char size_text[32], far_text[32], step_text[32];
-    dem_log(ctx, DEM_LOG_WARNING, "precision is lost: the grain is %s across at coordinates of %s, where the 32-bit numbers "
+    dem_log(ctx, DEM_LOG_WARNING,
+            "precision is lost: the grain is %s across at coordinates of %s, where the 32-bit numbers "
             "of the file lie %s apart; move it to the origin before export",
-            dem_format_double(size_text, sizeof size_text, size, 3), dem_format_double(far_text, sizeof far_text, far, 3),
+            dem_format_double(size_text, sizeof size_text, size, 3),
+            dem_format_double(far_text, sizeof far_text, far, 3),
             dem_format_double(step_text, sizeof step_text, ldexp(1, ilogb(far) - 23), 2));
 }
 
@@ -178,8 +187,8 @@ static void warn_name(const dem_ctx *ctx, const char *name, dem_mesh_format form
     for (size_t i = 0; i < sizeof formats / sizeof *formats; i++)
         if (formats[i].suffix && dem_file_has_suffix(name, formats[i].suffix) &&
             strcmp(formats[i].suffix, formats[format].suffix) != 0) {
-            dem_log(ctx, DEM_LOG_WARNING, "content is %s although the name ends in .%s; read as %s", formats[format].name,
-                    formats[i].suffix, formats[format].name);
+            dem_log(ctx, DEM_LOG_WARNING, "content is %s although the name ends in .%s; read as %s",
+                    formats[format].name, formats[i].suffix, formats[format].name);
             return;
         }
 }

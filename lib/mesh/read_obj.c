@@ -1,13 +1,12 @@
 #include "mesh/read.h"
 
-#include <stdlib.h>
 #include <string.h>
 
 #include "mesh/reader.h"
 
 typedef struct obj_counts {
-    size_t curves;          // free-form, lines and points: ignored
-    size_t strangers;       // lines of no known keyword
+    size_t curves;     // free-form, lines and points: ignored
+    size_t strangers;  // lines of no known keyword
     long first_stranger;
     dem_shown stranger;
 } obj_counts;
@@ -15,9 +14,9 @@ typedef struct obj_counts {
 // of names the rest of the line is free text
 static const char *const names[] = {"o", "g", "usemtl", "mtllib", "usemap", "maplib", "shadow_obj", "trace_obj"};
 static const char *const curves[] = {"p", "l", "curv", "curv2", "surf", "bzp", "bsp", "cdc", "cdp", "res"};
-static const char *const ignored[] = {"vn", "vt", "v", "f", "s", "vp", "mg", "cstype", "deg", "bmat", "step", "parm",
-                                      "trim", "hole", "scrv", "sp", "end", "con", "bevel", "c_interp", "d_interp",
-                                      "lod", "ctech", "stech", "call", "csh"};
+static const char *const ignored[] = {
+    "vn",   "vt",   "v",  "f",   "s",   "vp",    "mg",       "cstype",   "deg", "bmat",  "step",  "parm", "trim",
+    "hole", "scrv", "sp", "end", "con", "bevel", "c_interp", "d_interp", "lod", "ctech", "stech", "call", "csh"};
 
 static bool is_one_of(dem_word word, const char *const *list, size_t count)
 {
@@ -72,16 +71,20 @@ static dem_status read_corner(dem_reader *r, size_t so_far)
     if (!p || (p < r->stop && !text_is_blank(*p) && *p != '\\')) {
         dem_word word = dem_reader_word(r);
         bool comma = memchr(word.text, ',', word.length);
-        return dem_reader_fail(r, "'%s' is no corner of a face (5, 5/2, 5//3 or 5/2/3)%s",
-                               dem_word_show(word).text, comma ? "; put blanks instead of commas" : "; export the mesh again");
+        return dem_reader_fail(r, "'%s' is no corner of a face (5, 5/2, 5//3 or 5/2/3)%s", dem_word_show(word).text,
+                               comma ? "; put blanks instead of commas" : "; export the mesh again");
     }
     r->at = p;
     if (index == 0)
-        return dem_reader_fail(r, "face %zu refers to vertex 0, but OBJ counts from 1; add 1 to all, or export the mesh "
-                                  "again", r->face_count + 1);
+        return dem_reader_fail(r,
+                               "face %zu refers to vertex 0, but OBJ counts from 1; add 1 to all, or export the mesh "
+                               "again",
+                               r->face_count + 1);
     if (index < 0 && (size_t)-index > so_far)
-        return dem_reader_fail(r, "face %zu refers to vertex %.*s, counted back from the last, but only %zu came before; "
-                                  "export the mesh again", r->face_count + 1, (int)(p - begin), begin, so_far);
+        return dem_reader_fail(r,
+                               "face %zu refers to vertex %.*s, counted back from the last, but only %zu came before; "
+                               "export the mesh again",
+                               r->face_count + 1, (int)(p - begin), begin, so_far);
     return dem_reader_corner(r, index < 0 ? (int64_t)so_far + index + 1 : index, 1);
 }
 

@@ -1,7 +1,6 @@
 #include "mesh/read.h"
 
 #include <inttypes.h>
-#include <stdlib.h>
 #include <string.h>
 
 #include "mesh/reader.h"
@@ -56,11 +55,16 @@ static dem_status read_counts(dem_reader *r, size_t *vertices, size_t *faces)
         return dem_reader_fail(r, "negative counts in the OFF header; export the mesh again");
     size_t room = (size_t)(r->end - r->at) + 1;
     if ((uint64_t)v > room / VERTEX_BYTES)
-        return dem_reader_fail(r, "header says %" PRId64 " vertices, file has room for %zu; the file is damaged or cut "
-                                  "short, export it again", v, room / VERTEX_BYTES);
+        return dem_reader_fail(r,
+                               "header says %" PRId64 " vertices, file has room for %zu; the file is damaged or cut "
+                               "short, export it again",
+                               v, room / VERTEX_BYTES);
     if ((uint64_t)f > (room - (size_t)v * VERTEX_BYTES) / FACE_BYTES)
-        return dem_reader_fail(r, "header says %" PRId64 " faces, file has room for %zu; the file is damaged or cut short, "
-                                  "export it again", f, (room - (size_t)v * VERTEX_BYTES) / FACE_BYTES);
+        return dem_reader_fail(r,
+                               "header says %" PRId64
+                               " faces, file has room for %zu; the file is damaged or cut short, "
+                               "export it again",
+                               f, (room - (size_t)v * VERTEX_BYTES) / FACE_BYTES);
     *vertices = (size_t)v;
     *faces = (size_t)f;
     return DEM_OK;
@@ -88,8 +92,8 @@ static dem_status read_all(dem_reader *r)
     DEM_TRY(read_counts(r, &vertices, &faces));
     for (size_t i = 0; i < vertices; i++) {
         if (!next_line(r))
-            return dem_reader_fail(r, "unexpected end of file: header says %zu vertices, %zu are there; export it again",
-                                   vertices, i);
+            return dem_reader_fail(
+                r, "unexpected end of file: header says %zu vertices, %zu are there; export it again", vertices, i);
         dem_vec3 p;
         DEM_TRY(dem_reader_point(r, &p));
         DEM_TRY(dem_reader_vertex(r, p));
@@ -101,8 +105,10 @@ static dem_status read_all(dem_reader *r)
         DEM_TRY(read_face(r));
     }
     if (next_line(r))
-        return dem_reader_fail(r, "data behind the %zu vertices and %zu faces of the header; its counts are too small, "
-                                  "export the mesh again", vertices, faces);
+        return dem_reader_fail(r,
+                               "data behind the %zu vertices and %zu faces of the header; its counts are too small, "
+                               "export the mesh again",
+                               vertices, faces);
     return DEM_OK;
 }
 

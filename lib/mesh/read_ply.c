@@ -15,8 +15,8 @@ typedef enum ply_form { PLY_NONE, PLY_TEXT, PLY_LITTLE, PLY_BIG } ply_form;
 static const struct {
     const char *name, *other_name;
     size_t size;
-} types[] = {{"char", "int8", 1},   {"uchar", "uint8", 1}, {"short", "int16", 2},   {"ushort", "uint16", 2},
-             {"int", "int32", 4},   {"uint", "uint32", 4}, {"float", "float32", 4}, {"double", "float64", 8}};
+} types[] = {{"char", "int8", 1}, {"uchar", "uint8", 1}, {"short", "int16", 2},   {"ushort", "uint16", 2},
+             {"int", "int32", 4}, {"uint", "uint32", 4}, {"float", "float32", 4}, {"double", "float64", 8}};
 
 typedef struct ply_property {
     ply_type type, count_type;
@@ -68,7 +68,8 @@ static dem_status read_element_line(ply_file *ply)
     int64_t count;
     DEM_TRY(dem_reader_whole(&ply->r, &count));
     if (count < 0)
-        return dem_reader_fail(&ply->r, "header says %" PRId64 " of element '%s'; export the mesh again", count, e->name.text);
+        return dem_reader_fail(&ply->r, "header says %" PRId64 " of element '%s'; export the mesh again", count,
+                               e->name.text);
     e->count = (size_t)count;
     ply->element_count++;
     return DEM_OK;
@@ -200,14 +201,21 @@ static double binary_value(const char *at, ply_type type, bool big)
     }
 }
 
+static dem_status cut_short(const dem_reader *r, const ply_element *e)
+{
+    return dem_reader_fail(r,
+                           "unexpected end of file among the %zu elements '%s' of the header; the file is cut short, "
+                           "export it again",
+                           e->count, e->name.text);
+}
+
 static dem_status read_value(ply_file *ply, ply_type type, const ply_element *e, double *value)
 {
     if (ply->form == PLY_TEXT)
         return dem_reader_number(&ply->r, value);
     size_t size = types[type].size;
     if ((size_t)(ply->r.end - ply->r.at) < size)
-        return dem_reader_fail(&ply->r, "unexpected end of file among the %zu elements '%s' of the header; the file is "
-                                        "cut short, export it again", e->count, e->name.text);
+        return cut_short(&ply->r, e);
     *value = binary_value(ply->r.at, type, ply->form == PLY_BIG);
     ply->r.at += size;
     return DEM_OK;
@@ -219,12 +227,16 @@ static dem_status read_list(ply_file *ply, const ply_element *e, const ply_prope
     double count, value;
     DEM_TRY(read_value(ply, property->count_type, e, &count));
     if (!(count >= 0 && count <= UINT32_MAX) || count != floor(count))
-        return dem_reader_fail(r, "a list in element '%s' has a length below 0 or not whole; the file is damaged, export "
-                                  "it again", e->name.text);
+        return dem_reader_fail(r,
+                               "a list in element '%s' has a length below 0 or not whole; the file is damaged, export "
+                               "it again",
+                               e->name.text);
     size_t room = (size_t)(r->end - r->at) / (ply->form == PLY_TEXT ? 1 : types[property->type].size);
     if (count > (double)room)
-        return dem_reader_fail(r, "a list of %zu items in element '%s', file has room for %zu; the file is damaged or "
-                                  "cut short, export it again", (size_t)count, e->name.text, room);
+        return dem_reader_fail(r,
+                               "a list of %zu items in element '%s', file has room for %zu; the file is damaged or "
+                               "cut short, export it again",
+                               (size_t)count, e->name.text, room);
     if (!use && ply->form != PLY_TEXT) {
         r->at += (size_t)count * types[property->type].size;
         return DEM_OK;
@@ -234,8 +246,10 @@ static dem_status read_list(ply_file *ply, const ply_element *e, const ply_prope
         if (!use || property->role != PLY_CORNERS)
             continue;
         if (!(fabs(value) < 0x1p53) || value != floor(value))
-            return dem_reader_fail(r, "face %zu refers to a vertex whose number is not whole; the file is damaged, "
-                                      "export it again", r->face_count + 1);
+            return dem_reader_fail(r,
+                                   "face %zu refers to a vertex whose number is not whole; the file is damaged, "
+                                   "export it again",
+                                   r->face_count + 1);
         DEM_TRY(dem_reader_corner(r, (int64_t)value, 0));
     }
     return DEM_OK;
@@ -265,8 +279,7 @@ static dem_status next_line(dem_reader *r, const ply_element *e)
 {
     do {
         if (!dem_reader_line(r))
-            return dem_reader_fail(r, "unexpected end of file among the %zu elements '%s' of the header; the file is "
-                                      "cut short, export it again", e->count, e->name.text);
+            return cut_short(r, e);
         reader_skip_blanks(r);
     } while (r->at == r->stop);
     return DEM_OK;
@@ -281,8 +294,10 @@ static dem_status read_elements(ply_file *ply, const ply_element *e, bool use)
     size_t least = text ? 2 * e->properties : e->least_bytes;
     size_t room = ((size_t)(r->end - (text ? r->next : r->at)) + (text ? 1 : 0)) / least;
     if (e->count > room)
-        return dem_reader_fail(r, "header says %zu of element '%s', file has room for %zu; the file is damaged or cut "
-                                  "short, export it again", e->count, e->name.text, room);
+        return dem_reader_fail(r,
+                               "header says %zu of element '%s', file has room for %zu; the file is damaged or cut "
+                               "short, export it again",
+                               e->count, e->name.text, room);
     if (!use && !text && !e->lists) {
         r->at += e->count * e->least_bytes;
         return DEM_OK;
@@ -303,8 +318,10 @@ static dem_status check_tail(ply_file *ply)
     const char *tail = ply->form == PLY_TEXT ? r->next : r->at;
     for (const char *p = tail; p < r->end; p++)
         if (*p && !text_is_blank(*p) && *p != '\n' && *p != '\r')
-            return dem_reader_fail(r, "%td bytes behind the last element of the header; its counts are too small, export "
-                                      "the mesh again", r->end - tail);
+            return dem_reader_fail(r,
+                                   "%td bytes behind the last element of the header; its counts are too small, export "
+                                   "the mesh again",
+                                   r->end - tail);
     return DEM_OK;
 }
 

@@ -1,6 +1,5 @@
 #include "mesh/read.h"
 
-#include <stdlib.h>
 #include <string.h>
 
 #include "base/memory.h"
@@ -28,8 +27,10 @@ static dem_status read_binary_facet(dem_reader *r)
     for (const char *at = r->at + STL_NORMAL; at < r->at + STL_NORMAL + 36; at += 12) {
         dem_vec3 p = {little_float(at), little_float(at + 4), little_float(at + 8)};
         if (!point_is_usable(p))
-            return dem_reader_fail(r, "triangle %zu (byte %td) has a corner that is not finite; the file is damaged, "
-                                      "export it again", mesh->triangle_count + 1, at - r->bytes);
+            return dem_reader_fail(r,
+                                   "triangle %zu (byte %td) has a corner that is not finite; the file is damaged, "
+                                   "export it again",
+                                   mesh->triangle_count + 1, at - r->bytes);
         mesh->triangles[mesh->vertex_count] = (uint32_t)mesh->vertex_count;
         DEM_TRY(dem_reader_vertex(r, p));
     }
@@ -45,8 +46,10 @@ dem_status dem_read_stl_binary(const dem_ctx *ctx, const char *name, const char 
         return dem_reader_fail(&r, "%zu bytes are too few for a binary STL; export it again", size);
     size_t count = little_u32(bytes + 80), room = (size - STL_HEADER) / STL_FACET;
     if (size - STL_HEADER != count * STL_FACET)
-        return dem_reader_fail(&r, "header says %zu triangles, file has room for %zu; the file is damaged or cut short, "
-                                   "export it again", count, room);
+        return dem_reader_fail(&r,
+                               "header says %zu triangles, file has room for %zu; the file is damaged or cut short, "
+                               "export it again",
+                               count, room);
     if (count > UINT32_MAX / 3)
         return dem_reader_fail(&r, "%zu triangles are more than can be counted; reduce the mesh first", count);
     mesh->vertices = dem_alloc(3 * count, sizeof *mesh->vertices);
@@ -83,7 +86,8 @@ static dem_status read_facet(dem_reader *r)
     dem_word word;
     do {
         word = dem_reader_word_beyond(r);
-        if (word.length == 0 || dem_word_is(word, "vertex") || dem_word_is(word, "facet") || dem_word_is(word, "endfacet"))
+        if (word.length == 0 || dem_word_is(word, "vertex") || dem_word_is(word, "facet") ||
+            dem_word_is(word, "endfacet"))
             return dem_reader_unexpected(r, word, "'outer loop'");
     } while (!dem_word_is(word, "outer"));
     DEM_TRY(expect(r, "loop", "'loop'"));
@@ -104,7 +108,7 @@ static dem_status read_facet(dem_reader *r)
     return dem_reader_face(r);
 }
 
-// behind "solid" the rest of the line is a name, unless a facet follows on the same line
+// behind "solid" and "endsolid" the rest of the line is a name, unless a facet follows on the same line
 static void skip_name(dem_reader *r)
 {
     for (;;) {
@@ -134,7 +138,7 @@ static dem_status read_solids(dem_reader *r)
             skip_name(r);
             open = true;
         } else if (dem_word_is(word, "endsolid")) {
-            r->at = r->stop;
+            skip_name(r);
             open = false;
         } else {
             return dem_reader_unexpected(r, word, "'facet' or 'endsolid'");

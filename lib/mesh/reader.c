@@ -15,8 +15,8 @@ dem_reader dem_reader_begin(const dem_ctx *ctx, const char *name, const char *by
                             dem_error *error)
 {
     *mesh = (dem_mesh){0};
-    dem_reader r = {.ctx = ctx, .name = name, .bytes = bytes, .end = bytes + size, .passes = 1, .error = error,
-                    .mesh = mesh};
+    dem_reader r = {
+        .ctx = ctx, .name = name, .bytes = bytes, .end = bytes + size, .passes = 1, .error = error, .mesh = mesh};
     dem_reader_rewind(&r);
     return r;
 }
@@ -50,8 +50,10 @@ dem_status dem_reader_end(dem_reader *r, dem_status status)
     if (status == DEM_OK && r->mesh->triangle_count == 0) {
         r->line = 0;
         if (r->mesh->vertex_count)
-            status = dem_reader_fail(r, "%zu vertices but no faces: points alone enclose no volume; make a surface of "
-                                        "them first, or export the mesh with its faces", r->mesh->vertex_count);
+            status = dem_reader_fail(r,
+                                     "%zu vertices but no faces: points alone enclose no volume; make a surface of "
+                                     "them first, or export the mesh with its faces",
+                                     r->mesh->vertex_count);
         else
             status = dem_reader_fail(r, "no vertices and no faces; export the mesh again");
     }
@@ -64,7 +66,7 @@ dem_status dem_reader_end(dem_reader *r, dem_status status)
 
 dem_status dem_reader_fail(const dem_reader *r, const char *format, ...)
 {
-    char text[sizeof ((dem_error *)0)->text];
+    char text[sizeof((dem_error *)0)->text];
     va_list args;
     va_start(args, format);
     vsnprintf(text, sizeof text, format, args);
@@ -128,12 +130,15 @@ dem_status dem_reader_unexpected(const dem_reader *r, dem_word word, const char 
     if (word.length == 0 && r->next < r->end)
         return dem_reader_fail(r, "the line ends where %s should stand; the file is damaged, export it again", wanted);
     if (word.length == 0)
-        return dem_reader_fail(r, "unexpected end of file where %s should stand; the file is cut short, export it again",
-                               wanted);
+        return dem_reader_fail(
+            r, "unexpected end of file where %s should stand; the file is cut short, export it again", wanted);
     dem_shown shown = dem_word_show(word);
     if (word.text + word.length == r->end)
-        return dem_reader_fail(r, "unexpected end of file after '%s', where %s should stand; the file is cut short, export "
-                                  "it again", shown.text, wanted);
+        return dem_reader_fail(
+            r,
+            "unexpected end of file after '%s', where %s should stand; the file is cut short, export "
+            "it again",
+            shown.text, wanted);
     return dem_reader_fail(r, "'%s' where %s should stand; the file is damaged, export it again", shown.text, wanted);
 }
 
@@ -187,8 +192,9 @@ dem_status dem_reader_vertex(dem_reader *r, dem_vec3 p)
 {
     dem_mesh *mesh = r->mesh;
     if (!point_is_usable(p))
-        return dem_reader_fail(r, "vertex %zu is not finite (nan, inf or beyond 1e60); correct it or export the mesh again",
-                               mesh->vertex_count + 1);
+        return dem_reader_fail(
+            r, "vertex %zu is not finite (nan, inf or beyond 1e60); correct it or export the mesh again",
+            mesh->vertex_count + 1);
     if (mesh->vertex_count == UINT32_MAX)
         return dem_reader_fail(r, "more than %" PRIu32 " vertices; reduce the mesh first", UINT32_MAX);
     if (!dem_grow(&mesh->vertices, &r->vertex_capacity, mesh->vertex_count, sizeof *mesh->vertices))
@@ -200,9 +206,10 @@ dem_status dem_reader_vertex(dem_reader *r, dem_vec3 p)
 dem_status dem_reader_corner(dem_reader *r, int64_t index, int64_t first)
 {
     if (index < first || (uint64_t)(index - first) >= r->mesh->vertex_count)
-        return dem_reader_fail(r, "face %zu refers to vertex %" PRId64 " of %zu (counted from %d); the file is damaged "
-                                  "or cut short, export it again", r->face_count + 1, index, r->mesh->vertex_count,
-                               (int)first);
+        return dem_reader_fail(r,
+                               "face %zu refers to vertex %" PRId64 " of %zu (counted from %d); the file is damaged "
+                               "or cut short, export it again",
+                               r->face_count + 1, index, r->mesh->vertex_count, (int)first);
     if (!dem_grow(&r->corners, &r->corner_capacity, r->corner_count, sizeof *r->corners))
         return dem_fail_memory(r->error);
     r->corners[r->corner_count++] = (uint32_t)(index - first);
@@ -239,8 +246,10 @@ dem_status dem_reader_face(dem_reader *r)
             return dem_fail_memory(r->error);
     dem_status status = dem_polygon_split(&r->work, mesh->vertices, r->corners, count, mesh->triangles + used);
     if (status == DEM_BAD_INPUT)
-        return dem_reader_fail(r, "face %zu is concave and has %zu corners, at most %d can be cut into triangles; "
-                                  "triangulate the mesh before export", r->face_count, count, DEM_POLYGON_MOST_CORNERS);
+        return dem_reader_fail(r,
+                               "face %zu is concave and has %zu corners, at most %d can be cut into triangles; "
+                               "triangulate the mesh before export",
+                               r->face_count, count, DEM_POLYGON_MOST_CORNERS);
     if (status != DEM_OK)
         return dem_fail_memory(r->error);
     mesh->triangle_count += count - 2;

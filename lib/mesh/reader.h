@@ -10,16 +10,16 @@
 /// One file being read. Text readers use `at`, `stop` and `line`; binary ones `at` and `end`, with line 0.
 typedef struct dem_reader {
     const dem_ctx *ctx;
-    const char *name;               ///< of the file, for messages
-    const char *bytes, *end;        ///< the whole file
-    const char *at, *stop;          ///< what is left of the current line
-    const char *next, *newline;     ///< the next line; the first '\n' not before `at`
-    long line;                      ///< 1-based
-    int pass, passes;               ///< how often the file is walked through, for progress
+    const char *name;            ///< of the file, for messages
+    const char *bytes, *end;     ///< the whole file
+    const char *at, *stop;       ///< what is left of the current line
+    const char *next, *newline;  ///< the next line; the first '\n' not before `at`
+    long line;                   ///< 1-based
+    int pass, passes;            ///< how often the file is walked through, for progress
     dem_error *error;
     dem_mesh *mesh;
     size_t vertex_capacity, index_capacity;
-    uint32_t *corners;              ///< of the face being collected
+    uint32_t *corners;  ///< of the face being collected
     size_t corner_count, corner_capacity;
     size_t face_count;
     dem_polygon_work work;

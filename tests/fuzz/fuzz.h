@@ -21,7 +21,8 @@ static inline void fuzz_read(fuzz_reader *read, const uint8_t *data, size_t size
     dem_error error = {0};
     dem_status status = read(NULL, "fuzz", (const char *)data, size, &mesh, &error);
     if (status != DEM_OK) {
-        if (status != DEM_BAD_INPUT || error.code != status || !strchr(error.text, ';') || mesh.vertices || mesh.triangles)
+        if (status != DEM_BAD_INPUT || error.code != status || !strchr(error.text, ';') || mesh.vertices ||
+            mesh.triangles)
             abort();
         return;
     }
