@@ -16,6 +16,16 @@ dem_status dem_mesh_hull(const dem_mesh *mesh, dem_mesh *hull, dem_error *error)
 /// The coordinates should be about 1 in size; see dem_mesh_decimate.
 dem_status dem_mesh_collapse(const dem_mesh *mesh, size_t triangles, dem_mesh *out, dem_error *error);
 
+/// Cuts the triangles of each pair along what they share, exactly, so that the triangles of `out` meet only in
+/// whole edges and corners; only then are new vertices rounded. Each piece keeps its triangle's orientation, so a
+/// closed surface stays closed. Pairs as of dem_mesh_crossings, all of them.
+dem_status dem_mesh_refine(const dem_mesh *mesh, const uint32_t (*pairs)[2], size_t pair_count, dem_mesh *out,
+                           dem_error *error);
+
+/// Closed surface around whatever triangles there are (Portaneri et al. 2022): a ball of radius `alpha` rolls over
+/// the surface `offset` outside them, and fills what it cannot enter.
+dem_status dem_mesh_alpha_wrap(const dem_mesh *mesh, double alpha, double offset, dem_mesh *out, dem_error *error);
+
 #ifdef __cplusplus
 }
 #endif

@@ -23,4 +23,17 @@ dem_status dem_mesh_collapse(const dem_mesh *mesh, size_t triangles, dem_mesh *o
     return absent("decimation by edge collapse", out, error);
 }
 
+dem_status dem_mesh_refine(const dem_mesh *mesh, const uint32_t (*pairs)[2], size_t pair_count, dem_mesh *out,
+                           dem_error *error)
+{
+    (void)mesh, (void)pairs, (void)pair_count;
+    return absent("mending a surface that crosses itself", out, error);
+}
+
+dem_status dem_mesh_alpha_wrap(const dem_mesh *mesh, double alpha, double offset, dem_mesh *out, dem_error *error)
+{
+    (void)mesh, (void)alpha, (void)offset;
+    return absent("wrapping", out, error);
+}
+
 #endif
