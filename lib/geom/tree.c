@@ -119,11 +119,25 @@ static bool ray_meets_box(const dem_box *box, dem_vec3 p, dem_vec3 inverse)
     return near <= far * (1 + 1e-12);
 }
 
-int dem_tree_winding(const dem_tree *tree, dem_vec3 p, dem_vec3 d)
+static void pass_triangle(const dem_tree *tree, uint32_t triangle, dem_vec3 p, dem_vec3 d, dem_tree_visit visit,
+                          void *user)
+{
+    dem_vec3 a = corner(tree, triangle, 0);
+    dem_vec3 e1 = v3_sub(corner(tree, triangle, 1), a), e2 = v3_sub(corner(tree, triangle, 2), a);
+    dem_vec3 pv = v3_cross(d, e2), tv = v3_sub(p, a), qv = v3_cross(tv, e1);
+    double det = v3_dot(e1, pv);
+    if (det == 0)
+        return;
+    double u = v3_dot(tv, pv) / det, v = v3_dot(d, qv) / det, t = v3_dot(e2, qv) / det;
+    if (u >= 0 && v >= 0 && u + v <= 1 && t > 0)
+        visit(user, triangle, det > 0 ? -1 : 1, t);
+}
+
+void dem_tree_ray(const dem_tree *tree, dem_vec3 p, dem_vec3 d, dem_tree_visit visit, void *user)
 {
     dem_vec3 inverse = v3(1 / d.x, 1 / d.y, 1 / d.z);
-    int winding = 0, top = 0;
     uint32_t stack[DEM_BOX_TREE_STACK];
+    int top = 0;
     stack[top++] = 0;
     while (top) {
         uint32_t at = stack[--top];
@@ -135,18 +149,21 @@ int dem_tree_winding(const dem_tree *tree, dem_vec3 p, dem_vec3 d)
             stack[top++] = node->right;
             continue;
         }
-        for (uint32_t i = node->begin; i < node->end; i++) {
-            dem_vec3 a = corner(tree, tree->order[i], 0);
-            dem_vec3 e1 = v3_sub(corner(tree, tree->order[i], 1), a), e2 = v3_sub(corner(tree, tree->order[i], 2), a);
-            dem_vec3 pv = v3_cross(d, e2), tv = v3_sub(p, a), qv = v3_cross(tv, e1);
-            double det = v3_dot(e1, pv);
-            if (det == 0)
-                continue;
-            double u = v3_dot(tv, pv) / det, v = v3_dot(d, qv) / det;
-            if (u >= 0 && v >= 0 && u + v <= 1 && v3_dot(e2, qv) / det > 0)
-                winding += det > 0 ? -1 : 1;
-        }
+        for (uint32_t i = node->begin; i < node->end; i++)
+            pass_triangle(tree, tree->order[i], p, d, visit, user);
     }
+}
+
+static void add_crossing(void *user, uint32_t triangle, int leaving, double t)
+{
+    (void)triangle, (void)t;
+    *(int *)user += leaving;
+}
+
+int dem_tree_winding(const dem_tree *tree, dem_vec3 p, dem_vec3 d)
+{
+    int winding = 0;
+    dem_tree_ray(tree, p, d, add_crossing, &winding);
     return winding;
 }
 

@@ -27,6 +27,12 @@ void dem_tree_release(dem_tree *tree);
 /// `point` and `triangle` may be NULL.
 double dem_tree_closest(const dem_tree *tree, dem_vec3 p, double limit, dem_vec3 *point, uint32_t *triangle);
 
+/// Called for a triangle that a ray passes at p + t d; `leaving` is +1 where it comes out of the front, else -1.
+typedef void (*dem_tree_visit)(void *user, uint32_t triangle, int leaving, double t);
+
+/// All triangles the ray p + t d, t > 0, passes, in no particular order.
+void dem_tree_ray(const dem_tree *tree, dem_vec3 p, dem_vec3 d, dem_tree_visit visit, void *user);
+
 /// Winding number of a closed surface about p, seen along the direction d: signed crossings of the ray.
 int dem_tree_winding(const dem_tree *tree, dem_vec3 p, dem_vec3 d);
 

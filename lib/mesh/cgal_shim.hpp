@@ -5,6 +5,7 @@
 #include <cstdlib>
 #include <exception>
 #include <new>
+#include <string>
 #include <vector>
 
 #include "mesh/cgal.h"
@@ -26,8 +27,11 @@ template <class Work> dem_status guarded(const char *what, dem_error *error, Wor
     } catch (const std::bad_alloc &) {
         return dem_fail_memory(error);
     } catch (const std::exception &e) {
-        return dem_fail(error, DEM_FAILED, "%s failed inside CGAL (%.200s); simplify or repair the mesh first", what,
-                        e.what());
+        std::string text = e.what();
+        for (char &c : text)
+            c = c == '\n' ? ' ' : c;
+        return dem_fail(error, DEM_FAILED, "%s failed inside CGAL (%.150s); simplify or repair the mesh first", what,
+                        text.c_str());
     } catch (...) {
         return dem_fail(error, DEM_FAILED, "%s failed inside CGAL; simplify or repair the mesh first", what);
     }

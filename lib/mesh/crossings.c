@@ -7,7 +7,7 @@
 
 #include "math/orient.h"
 
-enum { STACK = 128, WORK_PER_TRIANGLE = 1000, WORK_BASE = 1000000 };
+enum { WORK_PER_TRIANGLE = 1000, WORK_BASE = 1000000 };
 
 typedef struct corners {
     dem_vec3 p[3];
@@ -167,7 +167,7 @@ typedef struct search {
 } search;
 
 // triangles of two leaves, or within one; false: out of memory
-static bool test_leaves(search *s, const dem_tree_node *one, const dem_tree_node *other)
+static bool test_leaves(search *s, const dem_box_node *one, const dem_box_node *other)
 {
     for (uint32_t i = one->begin; i < one->end; i++) {
         corners a = corners_of(s->mesh, s->tree->order[i]);
@@ -190,14 +190,14 @@ static bool test_leaves(search *s, const dem_tree_node *one, const dem_tree_node
 }
 
 // `leaf` against the leaves from itself on
-static bool test_leaf(search *s, const dem_tree_node *leaf)
+static bool test_leaf(search *s, const dem_box_node *leaf)
 {
-    uint32_t stack[STACK];
+    uint32_t stack[DEM_BOX_TREE_STACK];
     int top = 0;
     stack[top++] = 0;
     while (top) {
         uint32_t at = stack[--top];
-        const dem_tree_node *node = &s->tree->nodes[at];
+        const dem_box_node *node = &s->tree->nodes[at];
         s->work++;
         if (node->end <= leaf->begin || !boxes_meet(&node->box, &leaf->box))
             continue;

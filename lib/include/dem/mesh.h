@@ -45,7 +45,7 @@ typedef enum dem_keep {
 typedef struct dem_repair_options {
     dem_repair repair;
     dem_keep keep;
-    double wrap_detail;  ///< smallest feature the wrap follows, as a part of the bounding diagonal [-]; 0: 1/200
+    double wrap_detail;  ///< smallest feature the wrap follows, as a part of the bounding diagonal [-]; 0: 1/100
 } dem_repair_options;
 
 /// What was found in a mesh and what was done about it. Counts are of the input unless named otherwise.
