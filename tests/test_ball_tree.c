@@ -82,10 +82,11 @@ static void the_level_of_a_point_is_that_of_its_nearest_ball(void **state)
         for (size_t j = 0; j < COUNT; j++)
             want = fmin(want, v3_distance(p, balls[j].centre) - balls[j].radius);
         uint32_t nearest = COUNT;
-        check_near(dem_ball_tree_level(&tree, p, INFINITY, &nearest), want, 1e-15);
+        check((dem_ball_tree_level(&tree, p, INFINITY, 0, NULL) < 0) == (want < 0));
+        check_near(dem_ball_tree_level(&tree, p, INFINITY, -INFINITY, &nearest), want, 1e-15);
         check_near(v3_distance(p, balls[nearest].centre) - balls[nearest].radius, want, 1e-15);
-        check_near(dem_ball_tree_level(&tree, p, want - 0.01, NULL), want - 0.01, 0);
-        check_near(dem_ball_tree_level(&tree, p, want + 0.01, NULL), want, 1e-15);
+        check_near(dem_ball_tree_level(&tree, p, want - 0.01, -INFINITY, NULL), want - 0.01, 0);
+        check_near(dem_ball_tree_level(&tree, p, want + 0.01, -INFINITY, NULL), want, 1e-15);
     }
     dem_ball_tree_release(&tree);
 }

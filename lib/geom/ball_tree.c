@@ -50,21 +50,23 @@ size_t dem_ball_tree_near(const dem_ball_tree *tree, dem_ball ball, double gap, 
     return count;
 }
 
-double dem_ball_tree_level(const dem_ball_tree *tree, dem_vec3 p, double limit, uint32_t *nearest)
+double dem_ball_tree_level(const dem_ball_tree *tree, dem_vec3 p, double limit, double enough, uint32_t *nearest)
 {
     double best = limit;
     uint32_t stack[DEM_BOX_TREE_STACK];
     int top = 0;
     stack[top++] = 0;
-    while (top) {
+    while (top && best >= enough) {
         uint32_t at = stack[--top];
         const dem_box_node *node = &tree->boxes.nodes[at];
         double away = box_distance2(&node->box, p);
         if (away > 0 && (best <= 0 || away > best * best))
             continue;
         if (node->right) {
-            stack[top++] = node->right;
-            stack[top++] = at + 1;
+            const dem_box_node *left = node + 1, *right = &tree->boxes.nodes[node->right];
+            bool left_first = box_distance2(&left->box, p) < box_distance2(&right->box, p);
+            stack[top++] = left_first ? node->right : at + 1;
+            stack[top++] = left_first ? at + 1 : node->right;
             continue;
         }
         for (uint32_t i = node->begin; i < node->end; i++) {

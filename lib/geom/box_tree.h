@@ -27,11 +27,18 @@ typedef dem_box (*dem_box_of)(const void *items, uint32_t item);
 bool dem_box_tree_build(dem_box_tree *tree, const void *items, size_t count, uint32_t leaf, dem_box_of box_of);
 void dem_box_tree_release(dem_box_tree *tree);
 
+// fmax would be a library call here
+static inline double box_beyond(double low, double high, double x)
+{
+    double below = low - x, above = x - high, beyond = below > above ? below : above;
+    return beyond > 0 ? beyond : 0;
+}
+
+/// Squared distance of p to the box, 0 inside.
 static inline double box_distance2(const dem_box *box, dem_vec3 p)
 {
-    double x = fmax(0, fmax(box->low.x - p.x, p.x - box->high.x));
-    double y = fmax(0, fmax(box->low.y - p.y, p.y - box->high.y));
-    double z = fmax(0, fmax(box->low.z - p.z, p.z - box->high.z));
+    double x = box_beyond(box->low.x, box->high.x, p.x), y = box_beyond(box->low.y, box->high.y, p.y);
+    double z = box_beyond(box->low.z, box->high.z, p.z);
     return x * x + y * y + z * z;
 }
 

@@ -469,8 +469,10 @@ bool dem_patch_compute(dem_patch_work *w, uint32_t i, dem_patch *p)
     *p = (dem_patch){0};
     w->arc_count = 0;
     w->doubt = 0;
-    if (!caps_collect(w, i, &memory))
+    if (!caps_collect(w, i, &memory)) {
+        w->cap_count = 0;
         return memory;
+    }
     if (!arcs_collect(w))
         return false;
     if (w->arc_count == 0 && w->cap_count > 0)
@@ -508,4 +510,14 @@ dem_arc dem_patch_arc(const dem_patch_work *w, uint32_t i, size_t k)
     const cap *c = &w->caps[a->cap];
     return (dem_arc){.i = i, .j = c->ball, .u = c->u, .a = c->a, .b = c->b, .h = c->h, .s = c->s,
                      .begin = a->begin, .end = a->begin + a->span};
+}
+
+size_t dem_patch_cap_count(const dem_patch_work *w)
+{
+    return w->cap_count;
+}
+
+dem_cap dem_patch_cap(const dem_patch_work *w, size_t k)
+{
+    return (dem_cap){w->caps[k].u, w->caps[k].h, w->caps[k].ball};
 }

@@ -70,17 +70,23 @@ void dem_tree_release(dem_tree *tree)
     *tree = (dem_tree){0};
 }
 
-double dem_tree_closest(const dem_tree *tree, dem_vec3 p, double limit, dem_vec3 *point, uint32_t *triangle)
+typedef struct nearest {
+    double distance2;
+    dem_vec3 point;
+    uint32_t triangle;
+    bool found;
+} nearest;
+
+// looks for a point nearer than given, and stops at one not farther than `enough2`
+static void search_nearest(const dem_tree *tree, dem_vec3 p, double enough2, nearest *best)
 {
-    double best = limit * limit;
-    bool found = false;
     uint32_t stack[DEM_BOX_TREE_STACK];
     int top = 0;
     stack[top++] = 0;
-    while (top) {
+    while (top && best->distance2 > enough2) {
         uint32_t at = stack[--top];
-        const dem_box_node *node = &tree->nodes[at];
-        if (box_distance2(&node->box, p) >= best)
+        const dem_tree_node *node = &tree->nodes[at];
+        if (box_distance2(&node->box, p) >= best->distance2)
             continue;
         if (node->right) {
             uint32_t left = at + 1, right = node->right;
@@ -93,17 +99,28 @@ double dem_tree_closest(const dem_tree *tree, dem_vec3 p, double limit, dem_vec3
             uint32_t t = tree->order[i];
             dem_vec3 q = dem_triangle_closest(p, corner(tree, t, 0), corner(tree, t, 1), corner(tree, t, 2));
             double d = v3_norm2(v3_sub(q, p));
-            if (d < best) {
-                best = d;
-                found = true;
-                if (point)
-                    *point = q;
-                if (triangle)
-                    *triangle = t;
-            }
+            if (d < best->distance2)
+                *best = (nearest){d, q, t, true};
         }
     }
-    return found ? sqrt(best) : INFINITY;
+}
+
+double dem_tree_closest(const dem_tree *tree, dem_vec3 p, double limit, dem_vec3 *point, uint32_t *triangle)
+{
+    nearest best = {.distance2 = limit * limit};
+    search_nearest(tree, p, -1, &best);
+    if (best.found && point)
+        *point = best.point;
+    if (best.found && triangle)
+        *triangle = best.triangle;
+    return best.found ? sqrt(best.distance2) : INFINITY;
+}
+
+bool dem_tree_within(const dem_tree *tree, dem_vec3 p, double distance)
+{
+    nearest best = {.distance2 = INFINITY};
+    search_nearest(tree, p, distance * distance, &best);
+    return best.distance2 <= distance * distance;
 }
 
 // does the ray p + t d, t >= 0, meet the box? `inverse` is 1/d by component (infinities allowed)
@@ -113,8 +130,9 @@ static bool ray_meets_box(const dem_box *box, dem_vec3 p, dem_vec3 inverse)
     for (int k = 0; k < 3; k++) {
         double a = (v3_get(box->low, k) - v3_get(p, k)) * v3_get(inverse, k);
         double b = (v3_get(box->high, k) - v3_get(p, k)) * v3_get(inverse, k);
-        near = fmax(near, fmin(a, b));
-        far = fmin(far, fmax(a, b));
+        double first = a < b ? a : b, last = a < b ? b : a;
+        near = first > near ? first : near;
+        far = last < far ? last : far;
     }
     return near <= far * (1 + 1e-12);
 }

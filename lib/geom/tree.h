@@ -33,6 +33,9 @@ typedef void (*dem_tree_visit)(void *user, uint32_t triangle, int leaving, doubl
 /// All triangles the ray p + t d, t > 0, passes, in no particular order.
 void dem_tree_ray(const dem_tree *tree, dem_vec3 p, dem_vec3 d, dem_tree_visit visit, void *user);
 
+/// True where some surface point is not farther from p than `distance`; cheaper than finding the closest.
+bool dem_tree_within(const dem_tree *tree, dem_vec3 p, double distance);
+
 /// Winding number of a closed surface about p, seen along the direction d: signed crossings of the ray.
 int dem_tree_winding(const dem_tree *tree, dem_vec3 p, dem_vec3 d);
 

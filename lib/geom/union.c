@@ -13,14 +13,24 @@
 // how far balls move, in radii, when they are [-]
 #define SHAKE 1e-11
 
-// each crease once, from the ball of lower index
-static bool arcs_export(const dem_patch_work *w, uint32_t i, dem_ball_union *result, size_t *room)
+typedef struct rooms {
+    size_t arcs, caps, cap_count;
+} rooms;
+
+// the caps of ball i, and each crease once, from the ball of lower index
+static bool creases_export(const dem_patch_work *w, uint32_t i, dem_ball_union *result, rooms *room)
 {
+    for (size_t k = 0; k < dem_patch_cap_count(w); k++) {
+        if (!dem_grow(&result->caps, &room->caps, room->cap_count, sizeof *result->caps))
+            return false;
+        result->caps[room->cap_count++] = dem_patch_cap(w, k);
+    }
+    result->cap_start[i + 1] = room->cap_count;
     for (size_t k = 0; k < dem_patch_arc_count(w); k++) {
         dem_arc arc = dem_patch_arc(w, i, k);
         if (arc.j < i)
             continue;
-        if (!dem_grow(&result->arcs, room, result->arc_count, sizeof *result->arcs))
+        if (!dem_grow(&result->arcs, &room->arcs, result->arc_count, sizeof *result->arcs))
             return false;
         result->arcs[result->arc_count++] = arc;
     }
@@ -85,10 +95,13 @@ static bool boundary_closes(const dem_ball *balls, const dem_patch *patches, siz
 static bool union_compute(const dem_ball_tree *tree, bool want_arcs, dem_ball_union *result)
 {
     const dem_ball *balls = tree->balls;
-    size_t arc_room = 0, count = tree->boxes.count;
+    size_t count = tree->boxes.count;
+    rooms room = {0};
     dem_patch_work *w = dem_patch_work_create(tree);
     *result = (dem_ball_union){.patches = dem_alloc(count, sizeof *result->patches)};
-    bool done = w && result->patches;
+    if (want_arcs)
+        result->cap_start = dem_alloc_zero(count + 1, sizeof *result->cap_start);
+    bool done = w && result->patches && (!want_arcs || result->cap_start);
     dem_vec3 origin = {0};
     for (size_t i = 0; i < count; i++)
         origin = v3_along(origin, 1.0 / (double)count, balls[i].centre);
@@ -97,7 +110,7 @@ static bool union_compute(const dem_ball_tree *tree, bool want_arcs, dem_ball_un
     for (uint32_t i = 0; done && i < count; i++) {
         dem_patch *p = &result->patches[i];
         double r = balls[i].radius;
-        done = dem_patch_compute(w, i, p) && (!want_arcs || arcs_export(w, i, result, &arc_room));
+        done = dem_patch_compute(w, i, p) && (!want_arcs || creases_export(w, i, result, &room));
         moments_add(&moments, p, v3_sub(balls[i].centre, origin), r);
         result->area += r * r * p->area;
         result->redundant += p->area == 0;
@@ -150,6 +163,8 @@ void dem_ball_union_release(dem_ball_union *result)
 {
     free(result->patches);
     free(result->arcs);
+    free(result->caps);
+    free(result->cap_start);
     *result = (dem_ball_union){0};
 }
 

@@ -22,6 +22,13 @@ typedef struct dem_arc {
     double h, s, begin, end;
 } dem_arc;
 
+/// What ball `j` covers of the unit sphere of its neighbour: n.u > h.
+typedef struct dem_cap {
+    dem_vec3 u;
+    double h;
+    uint32_t j;
+} dem_cap;
+
 typedef struct dem_ball_union {
     dem_moments moments;   ///< about the origin the balls are given in
     double area;           ///< exposed
@@ -30,11 +37,14 @@ typedef struct dem_ball_union {
     dem_patch *patches;    ///< [count]
     dem_arc *arcs;         ///< [arc_count], only if asked for; each crease once, i < j
     size_t arc_count;
+    dem_cap *caps;         ///< with the arcs: those of ball i that no other one contains stand from cap_start[i]
+    size_t *cap_start;     ///< [count + 1]; equal ends and no area: swallowed
     bool consistent;       ///< false: a patch area was in doubt (sampled and integrated areas disagree)
 } dem_ball_union;
 
 /// Exact to rounding, coincidences included; work and memory grow with the overlapping pairs. Far from the origin the
-/// moments about it lose what their size loses, patches and area do not. `want_arcs` also lists the crease arcs.
+/// moments about it lose what their size loses, patches and area do not. `want_arcs` also lists the crease
+/// arcs and the caps.
 dem_status dem_ball_union_compute(const dem_ball *balls, size_t count, bool want_arcs, dem_ball_union *result,
                                   dem_error *error);
 void dem_ball_union_release(dem_ball_union *result);

@@ -55,13 +55,14 @@ static inline dem_vec3 v3_unit(dem_vec3 a)
     double n = v3_norm(a);
     return n > 0 ? v3_scale(a, 1 / n) : v3(0, 0, 1);
 }
+/// Smaller and larger components, those of a where b is not a number (fmin and fmax would be library calls).
 static inline dem_vec3 v3_min(dem_vec3 a, dem_vec3 b)
 {
-    return v3(fmin(a.x, b.x), fmin(a.y, b.y), fmin(a.z, b.z));
+    return v3(b.x < a.x ? b.x : a.x, b.y < a.y ? b.y : a.y, b.z < a.z ? b.z : a.z);
 }
 static inline dem_vec3 v3_max(dem_vec3 a, dem_vec3 b)
 {
-    return v3(fmax(a.x, b.x), fmax(a.y, b.y), fmax(a.z, b.z));
+    return v3(b.x > a.x ? b.x : a.x, b.y > a.y ? b.y : a.y, b.z > a.z ? b.z : a.z);
 }
 /// Component 0, 1 or 2.
 static inline double v3_get(dem_vec3 a, int axis)
