@@ -83,7 +83,8 @@ static void two_overlapping_balls_lose_their_lens(void **state)
         dem_ball_union u = compute(balls, 2);
         double along = a[2] + b[2] + 2 * d * b[1] + d * d * b[0], across = a[3] + b[3];
         dem_moments want = {.volume = a[0] + b[0], .first = v3_scale(axis, a[1] + b[1] + d * b[0])};
-        want.second = sym3_add(sym3_scale(sym3_outer(axis), along - across), (dem_sym3){across, across, across, 0, 0, 0});
+        want.second =
+            sym3_add(sym3_scale(sym3_outer(axis), along - across), (dem_sym3){across, across, across, 0, 0, 0});
         check_moments(u.moments, want, 1e-12);
         check_close(u.area, 2 * DEM_PI * (r1 * (r1 + z0) + r2 * (r2 + d - z0)), 1e-12);
         check(u.arc_count == 1 && u.pieces == 1);
@@ -96,8 +97,10 @@ static void two_unit_balls_have_the_published_mass_properties(void **state)
 {
     (void)state;
     // distance, volume, moment of inertia along and across the axis (nine digits)
-    static const double want[4][4] = {{0.5, 5.72686161, 2.42880291, 3.13187744}, {1, 7.06858347, 3.00414797, 5.21308031},
-                                      {1.5, 8.01760625, 3.29724057, 8.03263926}, {2, 8.37758041, 3.35103216, 11.7286126}};
+    static const double want[4][4] = {{0.5, 5.72686161, 2.42880291, 3.13187744},
+                                      {1, 7.06858347, 3.00414797, 5.21308031},
+                                      {1.5, 8.01760625, 3.29724057, 8.03263926},
+                                      {2, 8.37758041, 3.35103216, 11.7286126}};
     for (int i = 0; i < 4; i++) {
         dem_ball balls[2] = {{{0, 0, 0}, 1}, {{0, want[i][0], 0}, 1}};
         dem_union result;
@@ -373,8 +376,8 @@ static void the_patches_are_the_derivatives_of_the_moments(void **state)
             else if (k == 2)
                 nn = v3(p->second.xz, p->second.yz, p->second.zz), nnn = (dem_sym3){t[2], t[7], t[9], t[4], t[5], t[8]};
             dem_moments want = {.volume = r2 * n1, .first = v3_scale(v3_along(v3_scale(c, n1), ri, nn), r2)};
-            dem_sym3 cross = {2 * c.x * nn.x, 2 * c.y * nn.y, 2 * c.z * nn.z, c.x * nn.y + c.y * nn.x,
-                              c.x * nn.z + c.z * nn.x, c.y * nn.z + c.z * nn.y};
+            dem_sym3 cross = {2 * c.x * nn.x,          2 * c.y * nn.y,          2 * c.z * nn.z,
+                              c.x * nn.y + c.y * nn.x, c.x * nn.z + c.z * nn.x, c.y * nn.z + c.z * nn.y};
             want.second = sym3_add(sym3_add(sym3_scale(sym3_outer(c), n1), sym3_scale(cross, ri)), sym3_scale(nnn, r2));
             want.second = sym3_scale(want.second, r2);
             double s = 0.5 / step;
@@ -591,7 +594,8 @@ static void creases_lie_on_two_balls_and_inside_no_other(void **state)
 static void pieces_are_counted_with_a_margin(void **state)
 {
     (void)state;
-    dem_ball balls[6] = {{{5, 0, 0}, 1}, {{0, 0, 0}, 1}, {{1.9, 0, 0}, 1}, {{3.7, 0, 0}, 1}, {{0, 9, 0}, 1}, {{0, 9, 0}, 0.1}};
+    dem_ball balls[6] = {{{5, 0, 0}, 1},   {{0, 0, 0}, 1}, {{1.9, 0, 0}, 1},
+                         {{3.7, 0, 0}, 1}, {{0, 9, 0}, 1}, {{0, 9, 0}, 0.1}};
     uint32_t piece[6];
     check(dem_ball_pieces(balls, 6, 0, piece) == 2);
     check(piece[0] == 0 && piece[1] == 0 && piece[2] == 0 && piece[3] == 0 && piece[4] == 4 && piece[5] == 4);

@@ -8,13 +8,13 @@
 #include <string.h>
 
 enum { MAX_CELLS = 3000, MAX_LEVELS = 48, MAX_VERTICES = 60000, CHUNK = 32 };
-#define GAIN 0.003   // smallest relative gain worth another subdivision [-]
-#define SPREAD 1.3   // a sample stands for the surface so far around it, in square roots of its area [-]
+#define GAIN 0.003  // smallest relative gain worth another subdivision [-]
+#define SPREAD 1.3  // a sample stands for the surface so far around it, in square roots of its area [-]
 
 typedef enum cell_kind { TRIANGLE, PIECE, PATCH } cell_kind;
 
-// A piece of surface: a triangle, a piece of its plane, or a spherical triangle of a ball (with unit directions). Pieces
-// and spherical triangles may stick out of the surface.
+// A piece of surface: a triangle, a piece of its plane, or a spherical triangle of a ball (with unit directions).
+// Pieces and spherical triangles may stick out of the surface.
 typedef struct cell {
     dem_vec3 corner[3];
     dem_vec3 middle;
@@ -59,8 +59,8 @@ static double threshold(const search *s)
 // distance of q to the farthest corner
 static double corner_farthest(const dem_vec3 corner[3], dem_vec3 q)
 {
-    return sqrt(fmax(v3_norm2(v3_sub(corner[0], q)),
-                     fmax(v3_norm2(v3_sub(corner[1], q)), v3_norm2(v3_sub(corner[2], q)))));
+    return sqrt(
+        fmax(v3_norm2(v3_sub(corner[0], q)), fmax(v3_norm2(v3_sub(corner[1], q)), v3_norm2(v3_sub(corner[2], q)))));
 }
 
 // --- from the mesh to the boundary
@@ -88,7 +88,8 @@ static void mesh_evaluate(const search *s, cell *c)
 
 static cell triangle_cell(cell_kind kind, uint32_t index, dem_vec3 a, dem_vec3 b, dem_vec3 c)
 {
-    cell out = {.corner = {a, b, c}, .middle = v3_scale(v3_add(v3_add(a, b), c), 1.0 / 3), .index = index, .kind = kind};
+    cell out = {
+        .corner = {a, b, c}, .middle = v3_scale(v3_add(v3_add(a, b), c), 1.0 / 3), .index = index, .kind = kind};
     out.reach = corner_farthest(out.corner, out.middle);
     return out;
 }

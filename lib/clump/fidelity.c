@@ -21,7 +21,7 @@ typedef struct subject {
     double size;      // d_eq as given [m]
     dem_vec3 *vertices;
     dem_ball *balls;
-    dem_lines_bodies bodies;
+    dem_line_bodies bodies;
 } subject;
 
 static void subject_release(subject *s)
@@ -52,7 +52,8 @@ static dem_status subject_make(subject *s, const dem_mesh *mesh, const dem_ball 
         dem_vec3 c = quat_rotate(turn, v3_scale(v3_sub(balls[i].centre, s->solid.centre), 1 / s->size));
         s->balls[i] = (dem_ball){c, balls[i].radius / s->size};
     }
-    s->bodies = (dem_lines_bodies){s->vertices, mesh->triangles, mesh->vertex_count, mesh->triangle_count, s->balls, count};
+    s->bodies =
+        (dem_line_bodies){s->vertices, mesh->triangles, mesh->vertex_count, mesh->triangle_count, s->balls, count};
     return DEM_OK;
 }
 
@@ -65,9 +66,9 @@ static dem_status difference(const subject *s, double lines, int threads, double
     double area = s->solid.area / (s->size * s->size), variance = 0;
     *volume = 0;
     for (int k = 0; k < 3; k++) {
-        dem_line_volumes groups[DEM_LINE_GROUPS];
+        dem_bundle_volumes groups[DEM_LINE_GROUPS];
         dem_line_bundle bundle = {{axes[k], axes[(k + 1) % 3], axes[(k + 2) % 3]}, sqrt(area / 4 / lines)};
-        DEM_TRY(dem_lines_measure(&s->bodies, &bundle, threads, groups, error));
+        DEM_TRY(dem_line_bundle_measure(&s->bodies, &bundle, threads, groups, error));
         double mean = 0, square = 0;
         for (int g = 0; g < DEM_LINE_GROUPS; g++) {
             double only = groups[g].mesh + groups[g].balls - 2 * groups[g].both;
@@ -87,7 +88,7 @@ static dem_status gap_measure(const subject *s, double union_volume, size_t line
 {
     double volume, deviation, count = lines ? (double)lines : FIRST_LINES;
     DEM_TRY(difference(s, count, threads, &volume, &deviation, error));
-    for (; !lines && deviation > GAP_ERROR * volume && count < MOST_LINES; ) {
+    for (; !lines && deviation > GAP_ERROR * volume && count < MOST_LINES;) {
         count *= fmin(8, fmax(2, pow(deviation / (GAP_ERROR * volume), 1.5)));
         DEM_TRY(difference(s, count, threads, &volume, &deviation, error));
     }

@@ -18,7 +18,8 @@ void dem_ball_tree_release(dem_ball_tree *tree);
 size_t dem_ball_tree_near(const dem_ball_tree *tree, dem_ball ball, double gap, uint32_t *found);
 
 /// The smallest |p - c| - r of all balls, or `limit` where none is below it: outside the union the distance to it,
-/// inside it negative. A value below `enough` ends the search. `nearest` (may be NULL) is set where one is below `limit`.
+/// inside it negative. A value below `enough` ends the search. `nearest` (may be NULL) is set where one is below
+/// `limit`.
 double dem_ball_tree_level(const dem_ball_tree *tree, dem_vec3 p, double limit, double enough, uint32_t *nearest);
 
 #endif

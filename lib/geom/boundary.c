@@ -13,9 +13,16 @@ static dem_crease crease_make(const dem_ball *balls, const dem_arc *arc)
 {
     dem_ball ball = balls[arc->i];
     double middle = (arc->begin + arc->end) / 2, half = (arc->end - arc->begin) / 2;
-    dem_crease c = {.centre = v3_along(ball.centre, ball.radius * arc->h, arc->u), .a = arc->a, .b = arc->b, .u = arc->u,
-                    .radius = ball.radius * arc->s, .middle_x = cos(middle), .middle_y = sin(middle),
-                    .open = half < DEM_PI ? cos(half) : -2, .i = arc->i, .j = arc->j};
+    dem_crease c = {.centre = v3_along(ball.centre, ball.radius * arc->h, arc->u),
+                    .a = arc->a,
+                    .b = arc->b,
+                    .u = arc->u,
+                    .radius = ball.radius * arc->s,
+                    .middle_x = cos(middle),
+                    .middle_y = sin(middle),
+                    .open = half < DEM_PI ? cos(half) : -2,
+                    .i = arc->i,
+                    .j = arc->j};
     c.begin = crease_point(&c, cos(arc->begin), sin(arc->begin));
     c.middle = crease_point(&c, c.middle_x, c.middle_y);
     c.end = crease_point(&c, cos(arc->end), sin(arc->end));

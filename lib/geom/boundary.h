@@ -20,9 +20,9 @@ typedef struct dem_boundary {
     size_t count;
     dem_ball_union whole;  ///< with arcs and caps
     dem_ball_tree tree;
-    dem_crease *creases;   ///< [whole.arc_count]
+    dem_crease *creases;       ///< [whole.arc_count]
     dem_box_tree crease_tree;  ///< empty without creases
-    double *cones;         ///< [count] cosine of a cone about patches[i].first that holds the patch; -1: the sphere
+    double *cones;             ///< [count] cosine of a cone about patches[i].first that holds the patch; -1: the sphere
 } dem_boundary;
 
 dem_status dem_boundary_build(dem_boundary *boundary, const dem_ball *balls, size_t count, dem_error *error);

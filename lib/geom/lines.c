@@ -37,13 +37,13 @@ typedef struct row_work {
 
 // the bodies in the frame of the bundle and their rows
 typedef struct lattice {
-    const dem_lines_bodies *bodies;
+    const dem_line_bodies *bodies;
     dem_vec3 *vertices;
     dem_ball *balls;
     double spacing, x, y;  // column 0 of an unshifted row, row 0
     int64_t rows, columns;
-    size_t *start;         // [rows + 1] ranges of `members`
-    uint32_t *members;     // triangles, row by row
+    size_t *start;      // [rows + 1] ranges of `members`
+    uint32_t *members;  // triangles, row by row
 } lattice;
 
 static double row_y(const lattice *l, int64_t j)
@@ -93,7 +93,7 @@ static int larger_ball_first(const void *left, const void *right)
 }
 
 // projects everything, lays the lattice over it and lists the triangles of each row
-static bool lattice_make(lattice *l, const dem_lines_bodies *bodies, const dem_line_bundle *bundle)
+static bool lattice_make(lattice *l, const dem_line_bodies *bodies, const dem_line_bundle *bundle)
 {
     *l = (lattice){.bodies = bodies};
     l->vertices = dem_alloc(bodies->vertex_count, sizeof *l->vertices);
@@ -247,13 +247,14 @@ static bool column_mesh(row_work *w, int64_t column, size_t *count, bool *closed
         winding += w->crossings[k].winding;
         w->sorted[n++] = w->crossings[k];
     }
-    qsort(w->sorted, n, sizeof *w->sorted, crossing_order);
+    if (n > 1)
+        qsort(w->sorted, n, sizeof *w->sorted, crossing_order);
     *count = n;
     *closed = winding == 0;
     return true;
 }
 
-static void column_lengths(const row_work *w, size_t crossings, size_t chords, dem_line_volumes *v)
+static void column_lengths(const row_work *w, size_t crossings, size_t chords, dem_bundle_volumes *v)
 {
     for (size_t k = 0; k < chords; k++)
         v->balls += w->merged[k].to - w->merged[k].from;
@@ -273,7 +274,7 @@ static void column_lengths(const row_work *w, size_t crossings, size_t chords, d
 }
 
 // all lines of one row
-static bool row_measure(const lattice *l, int64_t j, row_work *w, dem_line_volumes groups[DEM_LINE_GROUPS])
+static bool row_measure(const lattice *l, int64_t j, row_work *w, dem_bundle_volumes groups[DEM_LINE_GROUPS])
 {
     w->crossing_count = w->chord_count = 0;
     for (int64_t i = 0; i < l->columns; i++) {
@@ -287,7 +288,7 @@ static bool row_measure(const lattice *l, int64_t j, row_work *w, dem_line_volum
         if (!ball_cross(l, l->balls[k], j, w))
             return false;
     for (int64_t i = 0; i < l->columns; i++) {
-        dem_line_volumes *v = &groups[(i + 3 * j) % DEM_LINE_GROUPS];
+        dem_bundle_volumes *v = &groups[(i + 3 * j) % DEM_LINE_GROUPS];
         size_t crossings, chords;
         bool closed;
         if (w->first_crossing[i] == NONE && w->cover[i].from > w->cover[i].to)
@@ -313,7 +314,7 @@ static void row_work_release(row_work *w)
     free(w->merged);
 }
 
-static bool rows_measure(const lattice *l, int threads, dem_line_volumes (*rows)[DEM_LINE_GROUPS])
+static bool rows_measure(const lattice *l, int threads, dem_bundle_volumes (*rows)[DEM_LINE_GROUPS])
 {
     bool failed = false;
 #pragma omp parallel num_threads(threads)
@@ -330,11 +331,11 @@ static bool rows_measure(const lattice *l, int threads, dem_line_volumes (*rows)
     return !failed;
 }
 
-dem_status dem_lines_measure(const dem_lines_bodies *bodies, const dem_line_bundle *bundle, int threads,
-                             dem_line_volumes groups[DEM_LINE_GROUPS], dem_error *error)
+dem_status dem_line_bundle_measure(const dem_line_bodies *bodies, const dem_line_bundle *bundle, int threads,
+                                   dem_bundle_volumes groups[DEM_LINE_GROUPS], dem_error *error)
 {
     lattice l;
-    dem_line_volumes(*rows)[DEM_LINE_GROUPS] = NULL;
+    dem_bundle_volumes(*rows)[DEM_LINE_GROUPS] = NULL;
     bool done = lattice_make(&l, bodies, bundle);
     if (done) {
         rows = dem_alloc_zero((size_t)l.rows, sizeof *rows);
@@ -342,7 +343,7 @@ dem_status dem_lines_measure(const dem_lines_bodies *bodies, const dem_line_bund
     }
     double cell = l.spacing * l.spacing * DEM_LINE_GROUPS;
     for (int g = 0; g < DEM_LINE_GROUPS; g++) {
-        groups[g] = (dem_line_volumes){0};
+        groups[g] = (dem_bundle_volumes){0};
         for (int64_t j = 0; done && j < l.rows; j++) {
             groups[g].mesh += rows[j][g].mesh * cell;
             groups[g].balls += rows[j][g].balls * cell;

@@ -66,7 +66,7 @@ struct dem_patch_work {
     size_t start_room;
     arc *arcs;
     size_t arc_room, arc_count;
-    double doubt;   // largest sign of arcs that do not close [-]
+    double doubt;  // largest sign of arcs that do not close [-]
 };
 
 dem_patch_work *dem_patch_work_create(const dem_ball_tree *tree)
@@ -307,8 +307,7 @@ static void arcs_expose(dem_patch_work *w, uint32_t c, hidden *list, size_t coun
 static bool arcs_collect(dem_patch_work *w)
 {
     // each interval ends at most one arc, a circle without intervals is one
-    if (!hidden_collect(w) ||
-        !reserve(&w->arcs, &w->arc_room, 2 * w->crossing_count + w->cap_count, sizeof *w->arcs))
+    if (!hidden_collect(w) || !reserve(&w->arcs, &w->arc_room, 2 * w->crossing_count + w->cap_count, sizeof *w->arcs))
         return false;
     w->arc_count = 0;
     for (uint32_t c = 0; c < w->cap_count; c++)
@@ -357,8 +356,8 @@ static double area_about(const dem_patch_work *w, dem_vec3 pole, double *area, d
 // Area of the patch; notes where it is not certain.
 static double patch_area(dem_patch_work *w)
 {
-    static const dem_vec3 poles[] = {{0.48, 0.6, 0.64}, {-0.64, 0.48, -0.6}, {0.6, -0.64, -0.48},
-                                     {-0.36, -0.48, 0.8}, {0.96, 0, -0.28}, {0, -0.96, -0.28}};
+    static const dem_vec3 poles[] = {{0.48, 0.6, 0.64},   {-0.64, 0.48, -0.6}, {0.6, -0.64, -0.48},
+                                     {-0.36, -0.48, 0.8}, {0.96, 0, -0.28},    {0, -0.96, -0.28}};
     double largest = 0, sum = 0, area = 0, doubt = 0, best = -1;
     for (size_t c = 0; c < w->cap_count; c++) {
         largest = fmax(largest, TWO_PI * w->caps[c].rest);
@@ -508,8 +507,15 @@ dem_arc dem_patch_arc(const dem_patch_work *w, uint32_t i, size_t k)
 {
     const arc *a = &w->arcs[k];
     const cap *c = &w->caps[a->cap];
-    return (dem_arc){.i = i, .j = c->ball, .u = c->u, .a = c->a, .b = c->b, .h = c->h, .s = c->s,
-                     .begin = a->begin, .end = a->begin + a->span};
+    return (dem_arc){.i = i,
+                     .j = c->ball,
+                     .u = c->u,
+                     .a = c->a,
+                     .b = c->b,
+                     .h = c->h,
+                     .s = c->s,
+                     .begin = a->begin,
+                     .end = a->begin + a->span};
 }
 
 size_t dem_patch_cap_count(const dem_patch_work *w)

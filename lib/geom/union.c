@@ -119,8 +119,8 @@ static bool union_compute(const dem_ball_tree *tree, bool want_arcs, dem_ball_un
     dem_patch_work_destroy(w);
     if (!done)
         return false;
-    result->consistent = doubt <= CLOSURE &&
-                         boundary_closes(balls, result->patches, count, origin, moments.volume, result->area);
+    result->consistent =
+        doubt <= CLOSURE && boundary_closes(balls, result->patches, count, origin, moments.volume, result->area);
     result->moments = moments_shift(moments, origin);
     return true;
 }

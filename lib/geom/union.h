@@ -8,10 +8,10 @@
 /// Exposed patch of one ball: integrals over the directions n of its unit sphere that no other ball covers.
 /// The derivative of any volume integral int f dV with respect to this ball is r^2 int f(c + r n) (n, 1) dn.
 typedef struct dem_patch {
-    double area;         ///< int dn [sr]; 0: the ball adds nothing
-    dem_vec3 first;      ///< int n dn
-    dem_sym3 second;     ///< int n n^T dn
-    double third[10];    ///< int n_a n_b n_c dn: xxx xxy xxz xyy xyz xzz yyy yyz yzz zzz
+    double area;       ///< int dn [sr]; 0: the ball adds nothing
+    dem_vec3 first;    ///< int n dn
+    dem_sym3 second;   ///< int n n^T dn
+    double third[10];  ///< int n_a n_b n_c dn: xxx xxy xxz xyy xyz xzz yyy yyz yzz zzz
 } dem_patch;
 
 /// An exposed arc of the circle in which ball `j` cuts ball `i`: points c_i + r_i (h u + s (a cos t + b sin t)),
@@ -30,16 +30,16 @@ typedef struct dem_cap {
 } dem_cap;
 
 typedef struct dem_ball_union {
-    dem_moments moments;   ///< about the origin the balls are given in
-    double area;           ///< exposed
-    size_t pieces;         ///< connected pieces (balls that overlap)
-    size_t redundant;      ///< balls without exposed surface
-    dem_patch *patches;    ///< [count]
-    dem_arc *arcs;         ///< [arc_count], only if asked for; each crease once, i < j
+    dem_moments moments;  ///< about the origin the balls are given in
+    double area;          ///< exposed
+    size_t pieces;        ///< connected pieces (balls that overlap)
+    size_t redundant;     ///< balls without exposed surface
+    dem_patch *patches;   ///< [count]
+    dem_arc *arcs;        ///< [arc_count], only if asked for; each crease once, i < j
     size_t arc_count;
-    dem_cap *caps;         ///< with the arcs: those of ball i that no other one contains stand from cap_start[i]
-    size_t *cap_start;     ///< [count + 1]; equal ends and no area: swallowed
-    bool consistent;       ///< false: a patch area was in doubt (sampled and integrated areas disagree)
+    dem_cap *caps;      ///< with the arcs: those of ball i that no other one contains stand from cap_start[i]
+    size_t *cap_start;  ///< [count + 1]; equal ends and no area: swallowed
+    bool consistent;    ///< false: a patch area was in doubt (sampled and integrated areas disagree)
 } dem_ball_union;
 
 /// Exact to rounding, coincidences included; work and memory grow with the overlapping pairs. Far from the origin the
