@@ -7,72 +7,30 @@
 
 enum { CHUNK = 64 };
 
-static double triangle_area2(const dem_tree *mesh, uint32_t triangle, dem_vec3 p[3], dem_vec3 *normal)
-{
-    for (int k = 0; k < 3; k++)
-        p[k] = mesh->vertices[mesh->triangles[3 * (size_t)triangle + (size_t)k]];
-    *normal = v3_cross(v3_sub(p[1], p[0]), v3_sub(p[2], p[0]));
-    return v3_norm(*normal);
-}
-
-// direction of the mesh at a sample and its angle to that of the boundary
-typedef struct mesh_side_normal {
-    dem_vec3 normal;
-    double angle;
-} mesh_side_normal;
-
-// points at equal steps of the area summed in the order of the tree: neighbours in the list are near each other;
-// returns the area of each
-static double mesh_samples(const dem_tree *mesh, size_t *count, dem_mesh_sample *samples, mesh_side_normal *normals)
-{
-    double total = 0, passed = 0;
-    dem_vec3 p[3], n;
-    for (size_t i = 0; i < mesh->count; i++)
-        total += triangle_area2(mesh, mesh->order[i], p, &n);
-    size_t made = 0;
-    for (size_t i = 0; i < mesh->count && made < *count; i++) {
-        passed += triangle_area2(mesh, mesh->order[i], p, &n);
-        for (; made < *count && ((double)made + 0.5) / (double)*count * total < passed; made++) {
-            // the R2 sequence (Roberts 2018), folded into the triangle
-            double k = (double)made + 0.5, u = k * 0.7548776662466927, v = k * 0.5698402909980532;
-            u -= floor(u);
-            v -= floor(v);
-            if (u + v > 1) {
-                u = 1 - u;
-                v = 1 - v;
-            }
-            samples[made].point = v3_along(v3_along(p[0], u, v3_sub(p[1], p[0])), v, v3_sub(p[2], p[0]));
-            samples[made].place = (uint32_t)i;
-            normals[made].normal = v3_unit(n);
-        }
-    }
-    *count = made;
-    return total / 2 / (double)made;
-}
-
 static bool mesh_side(const dem_tree *mesh, const dem_boundary *boundary, size_t count, int threads, dem_deviation *out)
 {
-    dem_mesh_sample *samples = dem_alloc(count, sizeof *samples);
-    mesh_side_normal *normals = dem_alloc(count, sizeof *normals);
-    bool done = samples && normals;
+    dem_surface_point *points = dem_alloc(count, sizeof *points);
+    double *distance = dem_alloc(count, sizeof *distance), *angle = dem_alloc(count, sizeof *angle);
+    bool done = points && distance && angle;
     if (done) {
-        double area = mesh_samples(mesh, &count, samples, normals), angle = 0;
+        double area = dem_tree_spread(mesh, points, &count), sum = 0;
 #pragma omp parallel for num_threads(threads) schedule(dynamic, CHUNK)
         for (size_t i = 0; i < count; i++) {
-            dem_boundary_hit hit = dem_boundary_closest(boundary, samples[i].point, -1);
-            dem_vec3 n = normals[i].normal;
-            samples[i].distance = hit.distance;
-            normals[i].angle = atan2(v3_norm(v3_cross(hit.normal, n)), v3_dot(hit.normal, n));
+            dem_boundary_hit hit = dem_boundary_closest(boundary, points[i].point, -1);
+            dem_vec3 n = points[i].normal;
+            distance[i] = hit.distance;
+            angle[i] = atan2(v3_norm(v3_cross(hit.normal, n)), v3_dot(hit.normal, n));
         }
         for (size_t i = 0; i < count; i++) {
-            out->mesh_mean += samples[i].distance / (double)count;
-            angle += normals[i].angle / (double)count;
+            out->mesh_mean += distance[i] / (double)count;
+            sum += angle[i] / (double)count;
         }
-        out->normal_deg = angle * 180 / DEM_PI;
-        done = dem_farthest_of_mesh(mesh, boundary, threads, samples, count, area, &out->largest);
+        out->normal_deg = sum * 180 / DEM_PI;
+        done = dem_farthest_of_mesh(mesh, boundary, threads, points, distance, count, area, &out->largest);
     }
-    free(samples);
-    free(normals);
+    free(points);
+    free(distance);
+    free(angle);
     return done;
 }
 

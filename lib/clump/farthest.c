@@ -293,22 +293,31 @@ static bool vertex_distances(const search *s, double low, double *distance, size
     return true;
 }
 
-// the largest distance of the samples in a leaf, or of the last before it and the first after it
-static double leaf_distance(const dem_mesh_sample *samples, size_t count, const dem_tree_node *leaf, size_t *at)
+typedef struct mesh_samples {
+    const dem_surface_point *points;
+    const double *distances;
+    size_t count;
+    double wide;     // each stands for the surface so far around it
+    double *vertex;  // distances of the vertices
+} mesh_samples;
+
+// the first sample of a leaf or behind it, from *at on, and the largest distance of those in the leaf, of the last
+// before and of the first behind it
+static double leaf_distance(const mesh_samples *m, const dem_tree_node *leaf, size_t *at)
 {
-    while (*at < count && samples[*at].place < leaf->begin)
+    while (*at < m->count && m->points[*at].place < leaf->begin)
         ++*at;
-    double largest = *at > 0 ? samples[*at - 1].distance : 0;
-    for (size_t k = *at; k < count; k++) {
-        largest = fmax(largest, samples[k].distance);
-        if (samples[k].place >= leaf->end)
+    double largest = *at > 0 ? m->distances[*at - 1] : 0;
+    for (size_t k = *at; k < m->count; k++) {
+        largest = fmax(largest, m->distances[k]);
+        if (m->points[k].place >= leaf->end)
             break;
     }
     return largest;
 }
 
 // a triangle around the sample in the plane of its large triangle
-static void local_cell_add(search *s, uint32_t triangle, const dem_mesh_sample *sample, double wide)
+static void local_cell_add(search *s, uint32_t triangle, dem_vec3 sample, double distance, double wide)
 {
     const uint32_t *t = s->mesh->triangles + 3 * (size_t)triangle;
     const dem_vec3 *v = s->mesh->vertices;
@@ -316,71 +325,64 @@ static void local_cell_add(search *s, uint32_t triangle, const dem_mesh_sample *
     dem_vec3 b = v3_cross(n, a);
     for (int k = 0; k < 3; k++) {
         double turn = 2 * DEM_PI / 3 * k;
-        p[k] = v3_along(sample->point, 2 * wide, v3_along(v3_scale(a, cos(turn)), sin(turn), b));
+        p[k] = v3_along(sample, 2 * wide, v3_along(v3_scale(a, cos(turn)), sin(turn), b));
     }
     cell c = triangle_cell(PIECE, triangle, p[0], p[1], p[2]);
-    c.bound = sample->distance + wide;
+    c.bound = distance + wide;
     cell_add(s, c);
 }
 
 // the triangles of one leaf, or the surroundings of its samples where they are large, that leave hope for more
-static void leaf_collect(search *s, const dem_tree_node *leaf, double near, const double *vertex,
-                         const dem_mesh_sample *samples, size_t count, double wide)
+static void leaf_collect(search *s, const mesh_samples *m, const dem_tree_node *leaf, size_t *at)
 {
+    double near = leaf_distance(m, leaf, at);
     for (uint32_t k = leaf->begin; k < leaf->end; k++) {
         uint32_t triangle = s->mesh->order[k];
         const uint32_t *t = s->mesh->triangles + 3 * (size_t)triangle;
         const dem_vec3 *v = s->mesh->vertices;
         cell c = triangle_cell(TRIANGLE, triangle, v[t[0]], v[t[1]], v[t[2]]);
-        c.bound = fmax(near, fmax(vertex[t[0]], fmax(vertex[t[1]], vertex[t[2]]))) + wide;
-        if (c.reach < 3 * wide) {
+        c.bound = fmax(near, fmax(m->vertex[t[0]], fmax(m->vertex[t[1]], m->vertex[t[2]]))) + m->wide;
+        if (c.reach < 3 * m->wide) {
             if (c.bound > threshold(s))
                 cell_add(s, c);
             continue;
         }
-        for (size_t i = 0; i < count && samples[i].place <= k; i++)
-            if (samples[i].place == k && samples[i].distance + wide > threshold(s))
-                local_cell_add(s, triangle, &samples[i], wide);
+        for (size_t i = *at; i < m->count && m->points[i].place <= k; i++)
+            if (m->points[i].place == k && m->distances[i] + m->wide > threshold(s))
+                local_cell_add(s, triangle, m->points[i].point, m->distances[i], m->wide);
     }
 }
 
-static bool triangles_collect(search *s, const dem_mesh_sample *samples, size_t count, double wide)
+static bool mesh_collect(search *s, mesh_samples *m)
 {
     const dem_tree *mesh = s->mesh;
     size_t at = 0, vertex_count = 0;
     for (size_t k = 0; k < 3 * mesh->count; k++)
         vertex_count = mesh->triangles[k] >= vertex_count ? mesh->triangles[k] + (size_t)1 : vertex_count;
-    double *vertex = dem_alloc(vertex_count, sizeof *vertex);
-    if (!vertex || !vertex_distances(s, 0.5 * s->best, vertex, vertex_count)) {
-        free(vertex);
+    m->vertex = dem_alloc(vertex_count, sizeof *m->vertex);
+    if (!m->vertex || !vertex_distances(s, 0.5 * s->best, m->vertex, vertex_count))
         return false;
-    }
     for (size_t v = 0; v < vertex_count; v++)
-        s->best = fmax(s->best, vertex[v]);
-    for (size_t n = 0; n < mesh->node_count; n++) {
-        const dem_tree_node *leaf = &mesh->nodes[n];
-        if (leaf->right)
-            continue;
-        double near = leaf_distance(samples, count, leaf, &at);
-        leaf_collect(s, leaf, near, vertex, samples + at, count - at, wide);
-    }
-    free(vertex);
+        s->best = fmax(s->best, m->vertex[v]);
+    for (size_t n = 0; n < mesh->node_count; n++)
+        if (!mesh->nodes[n].right)
+            leaf_collect(s, m, &mesh->nodes[n], &at);
     return true;
 }
 
 bool dem_farthest_of_mesh(const dem_tree *mesh, const dem_boundary *boundary, int threads,
-                          const dem_mesh_sample *samples, size_t count, double area, double *largest)
+                          const dem_surface_point *samples, const double *distances, size_t count, double area,
+                          double *largest)
 {
     search s = {.mesh = mesh, .boundary = boundary, .best = *largest, .threads = threads};
+    mesh_samples m = {samples, distances, count, SPREAD * sqrt(area), NULL};
     for (size_t i = 0; i < count; i++)
-        s.best = fmax(s.best, samples[i].distance);
-    if (!triangles_collect(&s, samples, count, SPREAD * sqrt(area))) {
-        free(s.next.cells);
-        return false;
-    }
+        s.best = fmax(s.best, distances[i]);
+    bool done = mesh_collect(&s, &m);
+    free(m.vertex);
     cells_thin(&s, &s.next, 2 * MAX_CELLS);
     s.now = s.next;
     s.next = (cell_list){0};
     cells_evaluate(&s);
-    return search_run(&s, largest);
+    return search_run(&s, largest) && done;
 }

@@ -3,22 +3,16 @@
 #define DEM_CLUMP_FARTHEST_H
 
 #include "geom/boundary.h"
-#include "geom/tree.h"
+#include "geom/spread.h"
 
 /// Distance of p to the mesh, positive outside, and its closest point. `limit` says where to begin to look.
 double dem_mesh_level(const dem_tree *mesh, dem_vec3 p, double limit, dem_vec3 *closest);
 
-/// A sample of the mesh: where its triangle stands in mesh->order, and its distance to the boundary.
-typedef struct dem_mesh_sample {
-    dem_vec3 point;
-    uint32_t place;
-    double distance;
-} dem_mesh_sample;
-
-/// Raises *largest to the largest distance of a mesh point to the boundary. The samples lie evenly over the area and
-/// in the order of the tree, each standing for `area`. False: no memory.
+/// Raises *largest to the largest distance of a mesh point to the boundary. The samples come from dem_tree_spread, each
+/// for `area`, with their distances to the boundary. False: no memory.
 bool dem_farthest_of_mesh(const dem_tree *mesh, const dem_boundary *boundary, int threads,
-                          const dem_mesh_sample *samples, size_t count, double area, double *largest);
+                          const dem_surface_point *samples, const double *distances, size_t count, double area,
+                          double *largest);
 
 /// A sample of the boundary: its distance to the mesh (positive outside) and the closest point of the mesh.
 typedef struct dem_boundary_sample_hit {
