@@ -6,18 +6,18 @@
 // Near lists take in balls this much farther than needed, so that they hold while balls move [d_eq].
 static const double slack = 0.03;
 
-void dem_pack_set_columns(dem_packing *p, const dem_pack_state *state)
+void dem_ball_columns_set(dem_ball_columns *columns, const dem_ball *balls, size_t count)
 {
-    dem_ball_columns *c = &p->columns;
-    c->count = state->count;
-    c->padded = (state->count + DEM_LANES - 1) / DEM_LANES * DEM_LANES;
-    for (size_t i = 0; i < state->count; i++) {
-        c->x[i] = (float)state->balls[i].centre.x;
-        c->y[i] = (float)state->balls[i].centre.y;
-        c->z[i] = (float)state->balls[i].centre.z;
-        c->r[i] = (float)state->balls[i].radius;
+    dem_ball_columns *c = columns;
+    c->count = count;
+    c->padded = (count + DEM_LANES - 1) / DEM_LANES * DEM_LANES;
+    for (size_t i = 0; i < count; i++) {
+        c->x[i] = (float)balls[i].centre.x;
+        c->y[i] = (float)balls[i].centre.y;
+        c->z[i] = (float)balls[i].centre.z;
+        c->r[i] = (float)balls[i].radius;
     }
-    for (size_t i = state->count; i < c->padded; i++) {
+    for (size_t i = count; i < c->padded; i++) {
         c->x[i] = c->y[i] = c->z[i] = 1e9f;
         c->r[i] = 0;
     }
@@ -108,7 +108,7 @@ static bool any_failed(const dem_packing *p)
 static dem_status assign(dem_packing *p, dem_pack_state *state, bool make_lists, dem_error *error)
 {
     DEM_ASSERT(state->count > 0);
-    dem_pack_set_columns(p, state);
+    dem_ball_columns_set(&p->columns, state->balls, state->count);
     if (make_lists) {
         p->near_slack = slack;
         memcpy(p->near_at, state->balls, state->count * sizeof *p->near_at);

@@ -172,14 +172,15 @@ static void sink(offer *heap, size_t count, size_t at)
 }
 
 // lazy greedy (Minoux 1978): a gain is only computed again when its offer comes to the top
-static size_t take_best(offer *heap, size_t count, dem_lattice *lattice, size_t most, double gap, dem_ball *chosen)
+static size_t take_best(offer *heap, size_t count, dem_lattice *lattice, const dem_pack_kernels *kernels, size_t most,
+                        double gap, dem_ball *chosen)
 {
     size_t taken = 0;
     int64_t left = (int64_t)dem_lattice_difference(lattice), enough = (int64_t)(gap * (double)lattice->inside_count);
     for (size_t i = count / 2; i-- > 0;)
         sink(heap, count, i);
     while (taken < most && count > 0 && (gap <= 0 || left > enough)) {
-        int64_t gain = dem_lattice_gain(lattice, heap[0].ball);
+        int64_t gain = kernels->lattice_gain(lattice, heap[0].ball, NULL);
         if (gain < heap[0].gain) {
             heap[0].gain = gain;
             sink(heap, count, 0);
@@ -187,7 +188,7 @@ static size_t take_best(offer *heap, size_t count, dem_lattice *lattice, size_t 
         }
         if (gain <= 0)
             break;
-        dem_lattice_cover(lattice, heap[0].ball);
+        kernels->lattice_gain(lattice, heap[0].ball, lattice->covered);
         left -= gain;
         chosen[taken++] = heap[0].ball;
         heap[0] = heap[--count];
@@ -196,9 +197,10 @@ static size_t take_best(offer *heap, size_t count, dem_lattice *lattice, size_t 
     return taken;
 }
 
-dem_status dem_candidates_greedy(const dem_candidates *candidates, dem_lattice *lattice, const double *inflations,
-                                 size_t inflation_count, size_t most, double gap, int threads, dem_ball *chosen,
-                                 size_t *chosen_count, dem_error *error)
+dem_status dem_candidates_greedy(const dem_candidates *candidates, dem_lattice *lattice,
+                                 const dem_pack_kernels *kernels, const double *inflations, size_t inflation_count,
+                                 size_t most, double gap, int threads, dem_ball *chosen, size_t *chosen_count,
+                                 dem_error *error)
 {
     size_t count = candidates->count * inflation_count;
     offer *heap = dem_alloc(count, sizeof *heap);
@@ -209,9 +211,9 @@ dem_status dem_candidates_greedy(const dem_candidates *candidates, dem_lattice *
     for (size_t i = 0; i < count; i++) {
         dem_ball ball = candidates->balls[i / inflation_count];
         ball.radius += inflations[i % inflation_count];
-        heap[i] = (offer){dem_lattice_gain(lattice, ball), ball};
+        heap[i] = (offer){kernels->lattice_gain(lattice, ball, NULL), ball};
     }
-    *chosen_count = take_best(heap, count, lattice, most, gap, chosen);
+    *chosen_count = take_best(heap, count, lattice, kernels, most, gap, chosen);
     free(heap);
     return DEM_OK;
 }

@@ -2,7 +2,7 @@
 #ifndef DEM_CLUMP_PACK_CANDIDATES_H
 #define DEM_CLUMP_PACK_CANDIDATES_H
 
-#include "clump/pack_samples.h"
+#include "clump/pack_kernels.h"
 
 typedef struct dem_candidates {
     dem_ball *balls;
@@ -19,8 +19,9 @@ void dem_candidates_release(dem_candidates *candidates);
 
 /// Chooses up to `most` balls, candidates made larger by one of `inflations`, each time the one that shrinks the
 /// symmetric difference on the lattice most, until none does or the difference is at most `gap` of the grain.
-dem_status dem_candidates_greedy(const dem_candidates *candidates, dem_lattice *lattice, const double *inflations,
-                                 size_t inflation_count, size_t most, double gap, int threads, dem_ball *chosen,
-                                 size_t *chosen_count, dem_error *error);
+dem_status dem_candidates_greedy(const dem_candidates *candidates, dem_lattice *lattice,
+                                 const dem_pack_kernels *kernels, const double *inflations, size_t inflation_count,
+                                 size_t most, double gap, int threads, dem_ball *chosen, size_t *chosen_count,
+                                 dem_error *error);
 
 #endif

@@ -1,35 +1,50 @@
 #include "clump/pack_connect.h"
 
+#include <string.h>
+
 #include "base/status.h"
+
+// Whatever moves by at most d changes an overlap by at most 2 d: so long the tree found last still holds together.
+static bool still_joined(const dem_packing *p, const dem_ball *balls, size_t count, double overlap)
+{
+    if (count != p->tree_count || p->tree_overlap <= overlap)
+        return false;
+    double limit = (p->tree_overlap - overlap) / 2;
+    for (size_t i = 0; i < count; i++) {
+        const dem_ball *then = &p->tree_balls[i];
+        double move = v3_distance(balls[i].centre, then->centre) + fabs(balls[i].radius - then->radius);
+        if (!(move < limit))
+            return false;
+    }
+    return true;
+}
 
 size_t dem_pack_links(dem_packing *p, const dem_ball *balls, size_t count, double overlap, dem_link *links)
 {
-    double *gap = p->link_gap;
-    uint32_t *nearest = p->link_nearest;   // in the tree, for each ball that is not
-    uint32_t *left = p->order;             // balls not in the tree
-    size_t open = 0, left_count = 0;
-    for (uint32_t i = 1; i < count; i++) {
-        left[left_count++] = i;
-        gap[i] = INFINITY;
+    if (still_joined(p, balls, count, overlap))
+        return 0;
+    dem_ball_columns *c = &p->tree_columns;
+    float *reach = p->tree_reach;
+    double widest = -INFINITY;
+    size_t open = 0;
+    dem_ball_columns_set(c, balls, count);
+    for (size_t i = 0; i < c->padded; i++)
+        reach[i] = i < count ? 1e9f : -1e9f;
+    // minimum spanning tree (Prim 1957); the gaps again in double
+    for (int32_t joined = 0; joined >= 0;) {
+        reach[joined] = -1e9f;
+        joined = p->kernels->approach(c, (uint32_t)joined, reach, p->tree_nearest);
+        if (joined < 0)
+            break;
+        uint32_t i = (uint32_t)joined, j = (uint32_t)p->tree_nearest[joined];
+        double gap = v3_distance(balls[i].centre, balls[j].centre) - balls[i].radius - balls[j].radius;
+        widest = fmax(widest, gap);
+        if (gap + overlap > 0)
+            links[open++] = (dem_link){i, j, gap + overlap};
     }
-    // minimum spanning tree (Prim 1957)
-    for (uint32_t joined = 0; left_count > 0;) {
-        size_t best = 0;
-        for (size_t k = 0; k < left_count; k++) {
-            uint32_t i = left[k];
-            double d = v3_distance(balls[i].centre, balls[joined].centre) - balls[i].radius - balls[joined].radius;
-            if (d < gap[i]) {
-                gap[i] = d;
-                nearest[i] = joined;
-            }
-            if (gap[i] < gap[left[best]])
-                best = k;
-        }
-        joined = left[best];
-        left[best] = left[--left_count];
-        if (gap[joined] + overlap > 0)
-            links[open++] = (dem_link){joined, nearest[joined], gap[joined] + overlap};
-    }
+    p->tree_count = count;
+    p->tree_overlap = -widest;
+    memcpy(p->tree_balls, balls, count * sizeof *balls);
     return open;
 }
 

@@ -2,6 +2,8 @@
 // one is -v1; v2 adds nothing these loops could use.
 #include "clump/pack_kernels.h"
 
+#include <string.h>
+
 #ifndef DEM_KERNELS
 #define DEM_KERNELS plain
 #endif
@@ -203,80 +205,195 @@ static void equations(const dem_sample_block *restrict block, const dem_ball_col
     }
 }
 
-// the balls that a row of lines meets
-static size_t row_balls(const dem_ball_columns *balls, const dem_line_task *task, int32_t row)
+static int32_t approach(const dem_ball_columns *balls, uint32_t joined, float *restrict reach,
+                        int32_t *restrict nearest)
 {
-    const dem_line_field *field = task->field;
-    const float *axes[3] = {balls->x, balls->y, balls->z};
-    const float *u = axes[(field->axis + 1) % 3], *v = axes[(field->axis + 2) % 3], *w = axes[field->axis];
-    float y = field->origin[1] + (float)row * field->step;
-    float x = field->origin[0] + (float)field->first[row] * field->step, per_strip = 1 / (field->step * DEM_LINE_LANES);
-    int32_t strips = (int32_t)(field->strip[row + 1] - field->strip[row]);
-    size_t count = 0;
-    for (size_t i = 0; i < balls->count; i++) {
-        float off = y - v[i], reach2 = balls->r[i] * balls->r[i] - off * off;
-        if (reach2 <= 0)
-            continue;
-        float reach = sqrtf(reach2), from = (u[i] - reach - x) * per_strip, to = (u[i] + reach - x) * per_strip;
-        if (to < 0 || from >= (float)strips)
-            continue;
-        int32_t first = from > 0 ? (int32_t)from : 0, last = to < (float)strips ? (int32_t)to : strips - 1;
-        task->active[count++] = (dem_line_ball){u[i], w[i], reach2, off, first, last, (uint32_t)i};
+    float least[DEM_LANES], x = balls->x[joined], y = balls->y[joined], z = balls->z[joined], r = balls->r[joined];
+    int32_t who[DEM_LANES], id = (int32_t)joined, best = -1;
+    for (int l = 0; l < DEM_LANES; l++) {
+        least[l] = nowhere;
+        who[l] = -1;
     }
-    return count;
+    for (size_t i = 0; i < balls->padded; i += DEM_LANES) {
+        const float *restrict bx = balls->x + i, *restrict by = balls->y + i, *restrict bz = balls->z + i;
+        const float *restrict br = balls->r + i;
+        float *restrict best_of = reach + i;
+        int32_t *restrict from = nearest + i, first = (int32_t)i;
+        for (int l = 0; l < DEM_LANES; l++) {
+            float dx = bx[l] - x, dy = by[l] - y, dz = bz[l] - z;
+            float gap = sqrtf(dx * dx + dy * dy + dz * dz) - br[l] - r;
+            from[l] = gap < best_of[l] ? id : from[l];
+            best_of[l] = gap < best_of[l] ? gap : best_of[l];
+            float open = best_of[l] > -nowhere ? best_of[l] : nowhere;
+            who[l] = open < least[l] ? first + l : who[l];
+            least[l] = open < least[l] ? open : least[l];
+        }
+    }
+    float smallest = nowhere;
+    for (int l = 0; l < DEM_LANES; l++)
+        if (least[l] < smallest || (least[l] == smallest && who[l] >= 0 && who[l] < best)) {
+            smallest = least[l];
+            best = who[l];
+        }
+    return best;
+}
+
+// points i0..i1 of one row: inside and not yet covered minus outside and not yet covered
+static int64_t row_gain(const dem_lattice *lattice, uint32_t row, int32_t i0, int32_t i1, uint64_t *cover)
+{
+    int32_t first = lattice->first[row], last = first + (int32_t)(lattice->word[row + 1] - lattice->word[row]) - 1;
+    int64_t gain = 0;
+    for (int32_t w = i0 >> 6; w <= i1 >> 6; w++) {
+        uint64_t mask = lattice_mask(w, i0, i1);
+        if (w < first || w > last) {
+            gain -= __builtin_popcountll(mask);
+            continue;
+        }
+        size_t at = lattice->word[row] + (size_t)(w - first);
+        uint64_t fresh = mask & ~lattice->covered[at];
+        gain += 2 * __builtin_popcountll(fresh & lattice->inside[at]) - __builtin_popcountll(fresh);
+        if (cover)
+            cover[at] |= mask;
+    }
+    return gain;
+}
+
+// whole steps up to x, and from x on; x is far from overflow
+static inline int32_t steps_below(double x)
+{
+    int32_t i = (int32_t)x;
+    return i - (x < (double)i);
+}
+static inline int32_t steps_above(double x)
+{
+    return -steps_below(-x);
+}
+
+static int64_t lattice_gain(const dem_lattice *lattice, dem_ball ball, uint64_t *cover)
+{
+    const dem_columns *c = &lattice->rows;
+    double r = ball.radius / c->step, x = (ball.centre.x - lattice->origin) / c->step;
+    double y = (ball.centre.y - c->origin[0]) / c->step, z = (ball.centre.z - c->origin[1]) / c->step;
+    int64_t gain = 0;
+    int32_t last = steps_below(z + r);
+    for (int32_t j = steps_above(z - r); j <= last; j++) {
+        double dz = j - z, disc = r * r - dz * dz;
+        if (disc <= 0)
+            continue;
+        double half = sqrt(disc);
+        int32_t k1 = steps_below(y + half), begin = 0, end = 0;
+        uint32_t row = 0;
+        if (j >= 0 && j < c->row_count) {
+            row = c->line[j];
+            begin = c->first[j];
+            end = begin + (int32_t)(c->line[j + 1] - row);
+        }
+        for (int32_t k = steps_above(y - half); k <= k1; k++) {
+            double dy = k - y, rest = disc - dy * dy;
+            if (rest <= 0)
+                continue;
+            double reach = sqrt(rest);
+            int32_t i0 = steps_above(x - reach), i1 = steps_below(x + reach);
+            if (i1 < i0)
+                continue;
+            if (k >= begin && k < end)
+                gain += row_gain(lattice, row + (uint32_t)(k - begin), i0, i1, cover);
+            else
+                gain -= i1 - i0 + 1;
+        }
+    }
+    return gain;
+}
+
+/// A ball as a strip of lines sees it.
+typedef struct strip_ball {
+    float u, v, w;    ///< from the first line to the centre across, from the centre to the row, centre along
+    float reach2;     ///< r^2 - v^2
+} strip_ball;
+
+static strip_ball strip_view(const dem_ball_columns *balls, int axis, uint32_t i, float x, float y)
+{
+    const float *at[3] = {balls->x, balls->y, balls->z};
+    float u = at[(axis + 1) % 3][i] - x, v = y - at[(axis + 2) % 3][i], r = balls->r[i];
+    return (strip_ball){u, v, at[axis][i], r * r - v * v};
 }
 
 // the interval of one ball on each line of a strip; empty ones are inside out and far away
-static void strip_ends(const dem_line_ball *ball, float x, float step, float *restrict from, float *restrict to)
+static void strip_ends(strip_ball ball, float step, float *restrict from, float *restrict to)
 {
-    float u = ball->u, w = ball->w, reach2 = ball->reach2;
     for (int l = 0; l < DEM_LINE_LANES; l++) {
-        float off = x + (float)l * step - u, rest = reach2 - off * off;
+        float off = (float)l * step - ball.u, rest = ball.reach2 - off * off;
         float half = sqrtf(rest > 0 ? rest : 0);
-        from[l] = rest > 0 ? w - half : nowhere;
-        to[l] = rest > 0 ? w + half : -nowhere;
+        from[l] = rest > 0 ? ball.w - half : nowhere;
+        to[l] = rest > 0 ? ball.w + half : -nowhere;
     }
 }
 
-/// Which ends of a ball's intervals are exposed, as 1 and 0.
-typedef struct strip_exposed {
-    float from[DEM_LINE_LANES], to[DEM_LINE_LANES];
-} strip_exposed;
+/// One end of the union on each line of a strip, and whose end it is (an index into the strip's balls).
+typedef struct strip_front {
+    float at[DEM_LINE_LANES];
+    int32_t ball[DEM_LINE_LANES];
+} strip_front;
 
-// An end is exposed where it lies in no other ball; of two ends in the same place that of the later ball.
-static bool strip_expose(const dem_line_task *task, size_t count, size_t k, strip_exposed *restrict exposed)
+static bool any_below(const float *restrict a, float limit)
 {
-    int32_t hidden_from[DEM_LINE_LANES], hidden_to[DEM_LINE_LANES];
-    const float *restrict from = task->from[k], *restrict to = task->to[k];
-    for (int l = 0; l < DEM_LINE_LANES; l++)
-        hidden_from[l] = hidden_to[l] = to[l] < from[l];
-    for (size_t j = 0; j < k; j++) {
-        const float *restrict low = task->from[j], *restrict high = task->to[j];
-        for (int l = 0; l < DEM_LINE_LANES; l++) {
-            hidden_from[l] |= (low[l] < from[l]) & (from[l] <= high[l]);
-            hidden_to[l] |= (low[l] <= to[l]) & (to[l] < high[l]);
-        }
-    }
-    for (size_t j = k + 1; j < count; j++) {
-        const float *restrict low = task->from[j], *restrict high = task->to[j];
-        for (int l = 0; l < DEM_LINE_LANES; l++) {
-            hidden_from[l] |= (low[l] <= from[l]) & (from[l] <= high[l]);
-            hidden_to[l] |= (low[l] <= to[l]) & (to[l] <= high[l]);
-        }
-    }
     int32_t any = 0;
-    for (int l = 0; l < DEM_LINE_LANES; l++) {
-        exposed->from[l] = hidden_from[l] ? 0.0f : 1.0f;
-        exposed->to[l] = hidden_to[l] ? 0.0f : 1.0f;
-    }
     for (int l = 0; l < DEM_LINE_LANES; l++)
-        any |= !(hidden_from[l] & hidden_to[l]);
+        any |= a[l] < limit;
     return any;
 }
 
-typedef struct strip_sums {
-    float covered[DEM_LINE_LANES], common[DEM_LINE_LANES];
-} strip_sums;
+// the lowest begin of an interval beyond `passed`
+static bool next_begin(const dem_line_task *task, size_t count, const float *restrict passed,
+                       strip_front *restrict begin)
+{
+    float at[DEM_LINE_LANES];
+    int32_t ball[DEM_LINE_LANES];
+    for (int l = 0; l < DEM_LINE_LANES; l++) {
+        at[l] = nowhere;
+        ball[l] = 0;
+    }
+    for (size_t j = 0; j < count; j++) {
+        const float *restrict from = task->from[j];
+        int32_t who = (int32_t)j;
+        for (int l = 0; l < DEM_LINE_LANES; l++) {
+            float f = from[l] > passed[l] ? from[l] : nowhere;
+            ball[l] = f < at[l] ? who : ball[l];
+            at[l] = f < at[l] ? f : at[l];
+        }
+    }
+    memcpy(begin->at, at, sizeof at);
+    memcpy(begin->ball, ball, sizeof ball);
+    return any_below(at, nowhere);
+}
+
+// The end of the union's interval that begins at `begin`. Balls come by their centres along the lines, so one pass
+// reaches it nearly always, and a second one finds nothing.
+static void find_end(const dem_line_task *task, size_t count, const strip_front *begin, strip_front *restrict end)
+{
+    float at[DEM_LINE_LANES];
+    int32_t ball[DEM_LINE_LANES], moved;
+    memcpy(at, begin->at, sizeof at);
+    memcpy(ball, begin->ball, sizeof ball);
+    do {
+        float before[DEM_LINE_LANES];
+        memcpy(before, at, sizeof at);
+        for (size_t j = 0; j < count; j++) {
+            const float *restrict from = task->from[j], *restrict to = task->to[j];
+            int32_t who = (int32_t)j;
+            for (int l = 0; l < DEM_LINE_LANES; l++) {
+                float t = from[l] <= at[l] ? to[l] : -nowhere;
+                ball[l] = t > at[l] ? who : ball[l];
+                at[l] = t > at[l] ? t : at[l];
+            }
+        }
+        moved = 0;
+        for (int l = 0; l < DEM_LINE_LANES; l++)
+            moved |= before[l] != at[l];
+    } while (moved);
+    memcpy(end->at, at, sizeof at);
+    memcpy(end->ball, ball, sizeof ball);
+}
 
 /// Ends against the grain: the length of the line inside it before the end, and whether the end itself is.
 typedef struct strip_inside {
@@ -299,54 +416,86 @@ static void compare_spans(const dem_line_field *field, uint32_t strip, const flo
     }
 }
 
-// what one ball's exposed ends on a strip add
-static void add_ends(const dem_line_task *task, uint32_t strip, float x, const dem_line_ball *ball, size_t k,
-                     const strip_exposed *restrict exposed, strip_sums *restrict sums)
+/// A strip and the balls it meets.
+typedef struct strip_place {
+    const dem_ball_columns *balls;
+    const dem_line_task *task;
+    const uint32_t *list;
+    size_t count;
+    uint32_t strip;
+    float x, y;       ///< of the first line
+} strip_place;
+
+// what ends that lie on the line add to the sums of their balls
+static void add_sums(const strip_place *place, const strip_front *front, const strip_inside *against)
 {
-    const float *restrict from = task->from[k], *restrict to = task->to[k];
-    float step = task->field->step, u = ball->u, v = ball->v;
-    strip_inside low, high;
-    compare_spans(task->field, strip, from, &low);
-    compare_spans(task->field, strip, to, &high);
+    const dem_line_field *field = place->task->field;
+    const float *axes[3] = {place->balls->x, place->balls->y, place->balls->z};
+    const float *u = axes[(field->axis + 1) % 3], *v = axes[(field->axis + 2) % 3], *w = axes[field->axis];
+    float sums[4][DEM_LINE_LANES];
+    uint32_t ball[DEM_LINE_LANES];
+    for (int l = 0; l < DEM_LINE_LANES; l++)
+        ball[l] = place->list[front->ball[l]];
     for (int l = 0; l < DEM_LINE_LANES; l++) {
-        sums->covered[l] += exposed->to[l] * to[l] - exposed->from[l] * from[l];
-        sums->common[l] += exposed->to[l] * high.before[l] - exposed->from[l] * low.before[l];
+        uint32_t i = ball[l];
+        float across = place->x + (float)l * field->step - u[i], along = front->at[l] - w[i];
+        float s = front->at[l] < nowhere ? (1 - 2 * against->inside[l]) * fabsf(along) : 0;
+        sums[0][l] = s * across;
+        sums[1][l] = s * (place->y - v[i]);
+        sums[2][l] = s * (front->at[l] < nowhere ? along : 0);
+        sums[3][l] = s;
     }
-    if (!task->lanes)
-        return;
-    dem_line_lanes *restrict lanes = &task->lanes[ball->ball];
-    for (int l = 0; l < DEM_LINE_LANES; l++) {
-        float off = x + (float)l * step - u, half = (to[l] - from[l]) * 0.5f;
-        float a = exposed->from[l] * (1 - 2 * low.inside[l]), b = exposed->to[l] * (1 - 2 * high.inside[l]);
-        float both = (a + b) * half;
-        lanes->radial[l] += both;
-        lanes->across[0][l] += both * off;
-        lanes->across[1][l] += both * v;
-        lanes->along[l] += (b - a) * half * half;
+    for (int l = 0; l < DEM_LINE_LANES; l++)
+        for (int k = 0; k < 4; k++)
+            place->task->sums[ball[l]][k] += sums[k][l];
+}
+
+typedef struct strip_sums {
+    float covered[DEM_LINE_LANES], common[DEM_LINE_LANES];
+} strip_sums;
+
+static void add_strip(const strip_place *place, strip_sums *restrict sums, bool gradient)
+{
+    const dem_line_task *task = place->task;
+    float passed[DEM_LINE_LANES];
+    strip_front begin, end;
+    for (size_t k = 0; k < place->count; k++) {
+        strip_ball ball = strip_view(place->balls, task->field->axis, place->list[k], place->x, place->y);
+        strip_ends(ball, task->field->step, task->from[k], task->to[k]);
+    }
+    for (int l = 0; l < DEM_LINE_LANES; l++)
+        passed[l] = -nowhere;
+    while (next_begin(task, place->count, passed, &begin)) {
+        strip_inside low, high;
+        find_end(task, place->count, &begin, &end);
+        compare_spans(task->field, place->strip, begin.at, &low);
+        compare_spans(task->field, place->strip, end.at, &high);
+        for (int l = 0; l < DEM_LINE_LANES; l++) {
+            sums->covered[l] += end.at[l] - begin.at[l];
+            sums->common[l] += high.before[l] - low.before[l];
+            passed[l] = end.at[l];
+        }
+        if (gradient) {
+            add_sums(place, &begin, &low);
+            add_sums(place, &end, &high);
+        }
     }
 }
 
-static void lines(const dem_ball_columns *balls, dem_line_task *task)
+static void lines(const dem_ball_columns *balls, dem_line_task *task, bool gradient)
 {
     const dem_line_field *field = task->field;
     double covered = 0, common = 0;
     for (int32_t row = task->begin; row < task->end; row++) {
-        size_t count = row_balls(balls, task, row);
         strip_sums sums = {{0}, {0}};
-        uint32_t strips = field->strip[row + 1] - field->strip[row];
-        for (uint32_t s = 0; s < strips && count; s++) {
-            float x = field->origin[0] + (float)(field->first[row] + (int32_t)s * DEM_LINE_LANES) * field->step;
-            size_t here = 0;
-            for (uint32_t k = 0; k < count; k++)
-                if (task->active[k].first <= (int32_t)s && (int32_t)s <= task->active[k].last)
-                    task->strip_balls[here++] = k;
-            for (size_t k = 0; k < here; k++)
-                strip_ends(&task->active[task->strip_balls[k]], x, field->step, task->from[k], task->to[k]);
-            for (size_t k = 0; k < here; k++) {
-                strip_exposed exposed;
-                if (strip_expose(task, here, k, &exposed))
-                    add_ends(task, field->strip[row] + s, x, &task->active[task->strip_balls[k]], k, &exposed, &sums);
-            }
+        float y = field->origin[1] + (float)row * field->step;
+        for (uint32_t s = field->strip[row]; s < field->strip[row + 1]; s++) {
+            int32_t column = field->first[row] + (int32_t)(s - field->strip[row]) * DEM_LINE_LANES;
+            const uint32_t *start = task->start + (s - field->strip[task->begin]);
+            strip_place place = {balls, task, task->list + start[0], start[1] - start[0], s,
+                                 field->origin[0] + (float)column * field->step, y};
+            if (place.count)
+                add_strip(&place, &sums, gradient);
         }
         for (int l = 0; l < DEM_LINE_LANES; l++) {
             covered += (double)sums.covered[l];
@@ -381,5 +530,7 @@ const dem_pack_kernels JOIN(dem_pack_kernels_, DEM_KERNELS) = {
     .energy = energy,
     .with_ball = with_ball,
     .equations = equations,
+    .approach = approach,
+    .lattice_gain = lattice_gain,
     .lines = lines,
 };

@@ -42,31 +42,20 @@ typedef struct dem_line_field {
     float (*spans)[2][DEM_LINE_LANES];  ///< enter and leave; a line with fewer spans than its strip has them far away
 } dem_line_field;
 
-/// Sums over the exposed ends of one ball's intervals. With s = +1 for an end outside the grain, -1 for one inside,
-/// and n the unit normal of the ball there.
-typedef struct dem_line_lanes {
-    float radial[DEM_LINE_LANES];     ///< s |n_w|
-    float across[2][DEM_LINE_LANES];  ///< s |n_w| n_u r and s |n_w| n_v r
-    float along[DEM_LINE_LANES];      ///< s n_w |n_w| r^2
-} dem_line_lanes;
-
 /// One share of the rows of a field.
 typedef struct dem_line_task {
     const dem_line_field *field;
     int32_t begin, end;      ///< rows
-    dem_line_lanes *lanes;   ///< [balls] added to; NULL: no gradient
-    struct dem_line_ball *active;  ///< [balls] work space
-    uint32_t *strip_balls;         ///< [balls] work space
+    uint32_t *start;         ///< [strips + 1] of the balls that a strip meets, in `list`
+    uint32_t *list;          ///< of each strip by coordinate along the lines
+    size_t list_capacity;
+    /// [balls] sums over the exposed ends of their intervals, with s = +1 for an end outside the grain, -1 inside, n the
+    /// unit normal of the ball and w the direction of the lines: s |n_w| r (n_u r, n_v r, +-n_w r, 1)
+    float (*sums)[4];
     float (*from)[DEM_LINE_LANES], (*to)[DEM_LINE_LANES];  ///< [balls] work space: the ends of their intervals
     double covered, common;  ///< length of the lines inside the union, and inside both
+    bool failed;             ///< out of memory
 } dem_line_task;
-
-/// A ball as a row of lines sees it.
-typedef struct dem_line_ball {
-    float u, w, reach2, v;          ///< centre across and along, r^2 - v^2, offset of the row from the centre
-    int32_t first, last;            ///< strips of the row
-    uint32_t ball;
-} dem_line_ball;
 
 typedef struct dem_pack_kernels {
     const char *name;
@@ -88,7 +77,14 @@ typedef struct dem_pack_kernels {
     void (*equations)(const dem_sample_block *block, const dem_ball_columns *balls, const float *f,
                       const int32_t *owner, const dem_charge *charge, const uint32_t *owners, size_t owner_count,
                       dem_equation_lanes *const *slots);
-    void (*lines)(const dem_ball_columns *balls, dem_line_task *task);
+    /// For a growing tree: lowers reach[i], the gap of ball i to the nearest ball of the tree, where ball `joined` is
+    /// nearer. Balls of the tree have reach[i] <= -1e9. Returns the ball of the least other one, or -1.
+    int32_t (*approach)(const dem_ball_columns *balls, uint32_t joined, float *reach, int32_t *nearest);
+    /// By how many points the symmetric difference of grain and covered set shrinks with this ball; marks its points in
+    /// `cover` unless NULL.
+    int64_t (*lattice_gain)(const dem_lattice *lattice, dem_ball ball, uint64_t *cover);
+    /// Adds to `sums` if the gradient is wanted; sets `covered` and `common`.
+    void (*lines)(const dem_ball_columns *balls, dem_line_task *task, bool gradient);
 } dem_pack_kernels;
 
 /// The best set this machine can run, or the named one (NULL: none such, or not usable here).

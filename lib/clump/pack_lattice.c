@@ -32,17 +32,6 @@ static dem_status set_words(dem_lattice *lattice, double high_x, dem_error *erro
     return DEM_OK;
 }
 
-// the bits of word w that stand for points i0..i1
-static uint64_t word_mask(int32_t w, int32_t i0, int32_t i1)
-{
-    uint64_t mask = ~(uint64_t)0;
-    if (w == i0 >> 6)
-        mask &= ~(uint64_t)0 << (i0 & 63);
-    if (w == i1 >> 6)
-        mask &= ~(uint64_t)0 >> (63 - (i1 & 63));
-    return mask;
-}
-
 static void set_inside(dem_lattice *lattice, size_t row)
 {
     const dem_columns *c = &lattice->rows;
@@ -52,7 +41,7 @@ static void set_inside(dem_lattice *lattice, size_t row)
         if (i1 < i0)
             continue;
         for (int32_t w = i0 >> 6; w <= i1 >> 6; w++)
-            lattice->inside[lattice->word[row] + (uint32_t)(w - lattice->first[row])] |= word_mask(w, i0, i1);
+            lattice->inside[lattice->word[row] + (uint32_t)(w - lattice->first[row])] |= lattice_mask(w, i0, i1);
         lattice->inside_count += (size_t)(i1 - i0 + 1);
     }
 }
@@ -89,93 +78,6 @@ void dem_lattice_release(dem_lattice *lattice)
     free(lattice->inside);
     free(lattice->covered);
     *lattice = (dem_lattice){0};
-}
-
-// the row of grid column (i, j); false: not kept
-static bool find_row(const dem_lattice *lattice, int32_t i, int32_t j, size_t *row)
-{
-    const dem_columns *c = &lattice->rows;
-    if (j < 0 || j >= c->row_count || i < c->first[j] || (uint32_t)(i - c->first[j]) >= c->line[j + 1] - c->line[j])
-        return false;
-    *row = c->line[j] + (uint32_t)(i - c->first[j]);
-    return true;
-}
-
-bool dem_lattice_inside(const dem_lattice *lattice, dem_vec3 p)
-{
-    const dem_columns *c = &lattice->rows;
-    size_t row;
-    if (!find_row(lattice, (int32_t)floor((p.y - c->origin[0]) / c->step + 0.5),
-                  (int32_t)floor((p.z - c->origin[1]) / c->step + 0.5), &row))
-        return false;
-    int32_t i = (int32_t)floor((p.x - lattice->origin) / c->step + 0.5), w = (i >> 6) - lattice->first[row];
-    if (w < 0 || (uint32_t)w >= lattice->word[row + 1] - lattice->word[row])
-        return false;
-    return lattice->inside[lattice->word[row] + (uint32_t)w] >> (i & 63) & 1;
-}
-
-// points i0..i1 of one row: inside and not yet covered minus outside and not yet covered
-static int64_t row_gain(const dem_lattice *lattice, size_t row, int32_t i0, int32_t i1, uint64_t *cover)
-{
-    int32_t first = lattice->first[row], last = first + (int32_t)(lattice->word[row + 1] - lattice->word[row]) - 1;
-    int64_t gain = 0;
-    size_t base = lattice->word[row];
-    for (int32_t w = i0 >> 6; w <= i1 >> 6; w++) {
-        uint64_t mask = word_mask(w, i0, i1);
-        if (w < first || w > last) {
-            gain -= __builtin_popcountll(mask);
-            continue;
-        }
-        size_t at = base + (size_t)(w - first);
-        uint64_t fresh = mask & ~lattice->covered[at];
-        gain += 2 * __builtin_popcountll(fresh & lattice->inside[at]) - __builtin_popcountll(fresh);
-        if (cover)
-            cover[at] |= mask;
-    }
-    return gain;
-}
-
-static int64_t visit(const dem_lattice *lattice, dem_ball ball, uint64_t *cover)
-{
-    const dem_columns *c = &lattice->rows;
-    dem_vec3 p = ball.centre;
-    double r = ball.radius;
-    int64_t gain = 0;
-    int32_t j0 = (int32_t)ceil((p.z - r - c->origin[1]) / c->step), j1 = (int32_t)floor((p.z + r - c->origin[1]) / c->step);
-    for (int32_t j = j0; j <= j1; j++) {
-        double dz = c->origin[1] + j * c->step - p.z, disc = r * r - dz * dz;
-        if (disc <= 0)
-            continue;
-        double half = sqrt(disc);
-        int32_t k0 = (int32_t)ceil((p.y - half - c->origin[0]) / c->step);
-        int32_t k1 = (int32_t)floor((p.y + half - c->origin[0]) / c->step);
-        for (int32_t k = k0; k <= k1; k++) {
-            double dy = c->origin[0] + k * c->step - p.y, rest = disc - dy * dy;
-            if (rest <= 0)
-                continue;
-            double reach = sqrt(rest);
-            int32_t i0 = (int32_t)ceil((p.x - reach - lattice->origin) / c->step);
-            int32_t i1 = (int32_t)floor((p.x + reach - lattice->origin) / c->step);
-            size_t row;
-            if (i1 < i0)
-                continue;
-            if (find_row(lattice, k, j, &row))
-                gain += row_gain(lattice, row, i0, i1, cover);
-            else
-                gain -= i1 - i0 + 1;
-        }
-    }
-    return gain;
-}
-
-int64_t dem_lattice_gain(const dem_lattice *lattice, dem_ball ball)
-{
-    return visit(lattice, ball, NULL);
-}
-
-void dem_lattice_cover(dem_lattice *lattice, dem_ball ball)
-{
-    visit(lattice, ball, lattice->covered);
 }
 
 size_t dem_lattice_difference(const dem_lattice *lattice)

@@ -18,15 +18,21 @@ typedef struct dem_lattice {
 dem_status dem_lattice_build(const dem_pack_grain *grain, size_t points, dem_lattice *lattice, dem_error *error);
 void dem_lattice_release(dem_lattice *lattice);
 
-/// Is the lattice point nearest to p inside?
-bool dem_lattice_inside(const dem_lattice *lattice, dem_vec3 p);
-/// By how many points the symmetric difference of grain and covered set would shrink with this ball.
-int64_t dem_lattice_gain(const dem_lattice *lattice, dem_ball ball);
-void dem_lattice_cover(dem_lattice *lattice, dem_ball ball);
 /// Points that are either inside or covered but not both.
 size_t dem_lattice_difference(const dem_lattice *lattice);
 void dem_lattice_clear(dem_lattice *lattice);
 /// Every k-th inside point, such that there are about `count`; returns how many were written.
 size_t dem_lattice_sample(const dem_lattice *lattice, size_t count, dem_vec3 *points);
+
+/// The bits of word w that stand for points i0..i1 of its row.
+static inline uint64_t lattice_mask(int32_t w, int32_t i0, int32_t i1)
+{
+    uint64_t mask = ~(uint64_t)0;
+    if (w == i0 >> 6)
+        mask &= ~(uint64_t)0 << (i0 & 63);
+    if (w == i1 >> 6)
+        mask &= ~(uint64_t)0 >> (63 - (i1 & 63));
+    return mask;
+}
 
 #endif

@@ -3,6 +3,9 @@
 // surface integral, because n_x^2 + n_y^2 + n_z^2 = 1, and stays finite where a line grazes a ball.
 #include "clump/pack_lines.h"
 
+#include <stdlib.h>
+#include <string.h>
+
 #include "base/status.h"
 
 static const double margin = 0.1;                      // lines are kept this far around the grain's shadow [d_eq]
@@ -99,12 +102,14 @@ static dem_status take_work_space(dem_lines *lines, dem_error *error)
 {
     for (int k = 0; k < DEM_LINE_TASKS; k++) {
         dem_line_task *task = &lines->tasks[k];
-        task->lanes = dem_arena_take(&lines->arena, lines->capacity, sizeof *task->lanes);
-        task->active = dem_arena_take(&lines->arena, lines->capacity, sizeof *task->active);
-        task->strip_balls = dem_arena_take(&lines->arena, lines->capacity, sizeof *task->strip_balls);
+        task->sums = dem_arena_take(&lines->arena, lines->capacity, sizeof *task->sums);
+        uint32_t strips = task->field->strip[task->end] - task->field->strip[task->begin];
+        task->start = dem_arena_take(&lines->arena, strips + 1, sizeof *task->start);
         task->from = dem_arena_take(&lines->arena, lines->capacity, sizeof *task->from);
         task->to = dem_arena_take(&lines->arena, lines->capacity, sizeof *task->to);
     }
+    for (int axis = 0; axis < 3; axis++)
+        lines->order[axis] = dem_arena_take(&lines->arena, lines->capacity, sizeof *lines->order[axis]);
     return lines->arena.failed ? dem_fail_memory(error) : DEM_OK;
 }
 
@@ -133,16 +138,88 @@ dem_status dem_lines_build(const dem_pack_grain *grain, const dem_pack_kernels *
 
 void dem_lines_release(dem_lines *lines)
 {
+    for (int k = 0; k < DEM_LINE_TASKS; k++)
+        free(lines->tasks[k].list);
     dem_arena_release(&lines->arena);
     *lines = (dem_lines){0};
 }
 
-static double lane_sum(const float lanes[DEM_LINE_LANES])
+// Counts the balls of each strip of the task, or with `fill` writes them. start[s] is where the balls of strip s end
+// before, and begin after.
+static void visit_strips(const dem_ball_columns *balls, const dem_placed_ball *order, dem_line_task *task, bool fill)
 {
-    double sum = 0;
-    for (int l = 0; l < DEM_LINE_LANES; l++)
-        sum += (double)lanes[l];
-    return sum;
+    const dem_line_field *field = task->field;
+    const float *at[3] = {balls->x, balls->y, balls->z};
+    const float *u = at[(field->axis + 1) % 3], *v = at[(field->axis + 2) % 3];
+    float per_row = 1 / field->step, per_strip = 1 / (field->step * DEM_LINE_LANES);
+    for (size_t k = balls->count; k-- > 0;) {
+        uint32_t i = order[k].ball;
+        float r = balls->r[i], low = (v[i] - r - field->origin[1]) * per_row, high = (v[i] + r - field->origin[1]) * per_row;
+        int32_t begin = low > (float)task->begin ? (int32_t)low : task->begin;
+        int32_t end = high < (float)(task->end - 1) ? (int32_t)high + 1 : task->end;
+        for (int32_t row = begin; row < end; row++) {
+            float off = field->origin[1] + (float)row * field->step - v[i], reach2 = r * r - off * off;
+            int32_t strips = (int32_t)(field->strip[row + 1] - field->strip[row]);
+            if (reach2 <= 0 || strips == 0)
+                continue;
+            float reach = sqrtf(reach2), x = field->origin[0] + (float)field->first[row] * field->step;
+            float from = (u[i] - reach - x) * per_strip, to = (u[i] + reach - x) * per_strip;
+            if (to < 0 || from >= (float)strips)
+                continue;
+            int32_t first = from > 0 ? (int32_t)from : 0, last = to < (float)strips ? (int32_t)to : strips - 1;
+            uint32_t *start = task->start + (field->strip[row] - field->strip[task->begin]);
+            for (int32_t s = first; s <= last; s++) {
+                if (fill)
+                    task->list[--start[s]] = i;
+                else
+                    start[s]++;
+            }
+        }
+    }
+}
+
+// which balls each strip of a task meets: a counting sort
+static bool list_strips(const dem_ball_columns *balls, const dem_placed_ball *order, dem_line_task *task)
+{
+    uint32_t strips = task->field->strip[task->end] - task->field->strip[task->begin];
+    memset(task->start, 0, (strips + 1) * sizeof *task->start);
+    visit_strips(balls, order, task, false);
+    for (uint32_t s = 1; s <= strips; s++)
+        task->start[s] += task->start[s - 1];
+    size_t count = task->start[strips];
+    if (count > task->list_capacity) {
+        size_t capacity = count + count / 4 + 64;
+        uint32_t *grown = realloc(task->list, capacity * sizeof *grown);
+        if (!grown)
+            return false;
+        task->list = grown;
+        task->list_capacity = capacity;
+    }
+    visit_strips(balls, order, task, true);
+    return true;
+}
+
+static bool comes_before(dem_placed_ball a, dem_placed_ball b)
+{
+    return a.along != b.along ? a.along < b.along : a.ball < b.ball;
+}
+
+// by insertion: from one evaluation to the next the order hardly changes
+static void set_order(dem_lines *lines, const dem_ball_columns *balls)
+{
+    const float *at[3] = {balls->x, balls->y, balls->z};
+    for (int axis = 0; axis < 3; axis++) {
+        dem_placed_ball *order = lines->order[axis];
+        for (size_t i = 0; i < balls->count; i++) {
+            uint32_t ball = balls->count == lines->order_count ? order[i].ball : (uint32_t)i;
+            dem_placed_ball placed = {at[axis][ball], ball};
+            size_t k = i;
+            for (; k > 0 && comes_before(placed, order[k - 1]); k--)
+                order[k] = order[k - 1];
+            order[k] = placed;
+        }
+    }
+    lines->order_count = balls->count;
 }
 
 static void add_gradient(const dem_line_task *task, const dem_ball_columns *balls, double (*gradient)[4])
@@ -150,42 +227,45 @@ static void add_gradient(const dem_line_task *task, const dem_ball_columns *ball
     int w = task->field->axis, u = (w + 1) % 3, v = (w + 2) % 3;
     double cell = (double)task->field->step * (double)task->field->step;
     for (size_t i = 0; i < balls->count; i++) {
-        const dem_line_lanes *lanes = &task->lanes[i];
-        double r = (double)balls->r[i], scale = cell / r;
-        gradient[i][u] += scale / r * lane_sum(lanes->across[0]);
-        gradient[i][v] += scale / r * lane_sum(lanes->across[1]);
-        gradient[i][w] += scale / r * lane_sum(lanes->along);
-        gradient[i][3] += scale * lane_sum(lanes->radial);
+        double r = (double)balls->r[i];
+        gradient[i][u] += cell / (r * r) * (double)task->sums[i][0];
+        gradient[i][v] += cell / (r * r) * (double)task->sums[i][1];
+        gradient[i][w] += cell / (r * r) * (double)task->sums[i][2];
+        gradient[i][3] += cell / r * (double)task->sums[i][3];
     }
 }
 
-dem_line_volumes dem_lines_measure(dem_lines *lines, const dem_ball_columns *balls, double (*gradient)[4])
+static void run_task(const dem_lines *lines, const dem_ball_columns *balls, dem_line_task *task, bool gradient)
+{
+    if (gradient)
+        memset(task->sums, 0, balls->count * sizeof *task->sums);
+    task->failed = !list_strips(balls, lines->order[task->field->axis], task);
+    if (!task->failed)
+        lines->kernels->lines(balls, task, gradient);
+}
+
+dem_status dem_lines_measure(dem_lines *lines, const dem_ball_columns *balls, double (*gradient)[4],
+                             dem_line_volumes *volumes, dem_error *error)
 {
     DEM_ASSERT(balls->count <= lines->capacity);
+    set_order(lines, balls);
 #pragma omp parallel for num_threads(lines->threads) schedule(dynamic, 1) if (lines->threads > 1)
-    for (int k = 0; k < DEM_LINE_TASKS; k++) {
-        dem_line_task task = lines->tasks[k];
-        for (size_t i = 0; i < balls->count; i++)
-            task.lanes[i] = (dem_line_lanes){0};
-        task.lanes = gradient ? task.lanes : NULL;
-        lines->kernels->lines(balls, &task);
-        lines->tasks[k].covered = task.covered;
-        lines->tasks[k].common = task.common;
-    }
-    double length[3] = {0, 0, 0};
+    for (int k = 0; k < DEM_LINE_TASKS; k++)
+        run_task(lines, balls, &lines->tasks[k], gradient != NULL);
     for (size_t i = 0; i < balls->count && gradient; i++)
         gradient[i][0] = gradient[i][1] = gradient[i][2] = gradient[i][3] = 0;
+    double grain = lines->grain_length[0] + lines->grain_length[1] + lines->grain_length[2], covered = 0, common = 0;
     for (int k = 0; k < DEM_LINE_TASKS; k++) {
-        length[1] += lines->tasks[k].covered;
-        length[2] += lines->tasks[k].common;
+        if (lines->tasks[k].failed)
+            return dem_fail_memory(error);
+        covered += lines->tasks[k].covered;
+        common += lines->tasks[k].common;
         if (gradient)
             add_gradient(&lines->tasks[k], balls, gradient);
     }
-    for (int axis = 0; axis < 3; axis++)
-        length[0] += lines->grain_length[axis];
     double cell = (double)lines->fields[0].step * (double)lines->fields[0].step / 3;
-    dem_line_volumes volumes = {.grain = cell * length[0], .covered = cell * length[1], .common = cell * length[2]};
-    volumes.difference = volumes.grain + volumes.covered - 2 * volumes.common;
-    volumes.gap = 1 - volumes.common / (volumes.grain + volumes.covered - volumes.common);
-    return volumes;
+    *volumes = (dem_line_volumes){.grain = cell * grain, .covered = cell * covered, .common = cell * common,
+                                  .difference = cell * (grain + covered - 2 * common),
+                                  .gap = 1 - common / (grain + covered - common)};
+    return DEM_OK;
 }

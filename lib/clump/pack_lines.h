@@ -6,11 +6,18 @@
 
 enum { DEM_LINE_TASKS = 12 };
 
+typedef struct dem_placed_ball {
+    float along;
+    uint32_t ball;
+} dem_placed_ball;
+
 typedef struct dem_lines {
     dem_line_field fields[3];
     double grain_length[3];      ///< of the lines inside the grain
     dem_line_task tasks[DEM_LINE_TASKS];
     dem_arena arena;
+    dem_placed_ball *order[3];   ///< [capacity] balls by their coordinates
+    size_t order_count;
     const dem_pack_kernels *kernels;
     size_t capacity;             ///< most balls
     int threads;
@@ -28,6 +35,7 @@ dem_status dem_lines_build(const dem_pack_grain *grain, const dem_pack_kernels *
 void dem_lines_release(dem_lines *lines);
 
 /// `gradient` of the symmetric difference to (x, y, z, r) of each ball; NULL: not wanted.
-dem_line_volumes dem_lines_measure(dem_lines *lines, const dem_ball_columns *balls, double (*gradient)[4]);
+dem_status dem_lines_measure(dem_lines *lines, const dem_ball_columns *balls, double (*gradient)[4],
+                             dem_line_volumes *volumes, dem_error *error);
 
 #endif

@@ -56,7 +56,7 @@ static dem_status grow_to(dem_packing *p, dem_pack_state *state, size_t count, d
 static dem_status place(dem_packing *p, dem_pack_state *state, dem_error *error)
 {
     size_t wanted = p->options->spheres;
-    DEM_TRY(dem_candidates_greedy(&p->candidates, &p->lattice, p->inflations, p->inflation_count,
+    DEM_TRY(dem_candidates_greedy(&p->candidates, &p->lattice, p->kernels, p->inflations, p->inflation_count,
                                   START_FACTOR * wanted, 0, p->threads, state->balls, &state->count, error));
     for (size_t i = 0; i < state->count; i++)
         state->clearances[i].distance = -1;
@@ -69,15 +69,15 @@ static dem_status place(dem_packing *p, dem_pack_state *state, dem_error *error)
     return dem_pack_join(p, state, error);
 }
 
-static void measure(packing_run *run)
+static dem_status measure(packing_run *run, dem_error *error)
 {
-    dem_pack_set_columns(run->p, &run->state);
-    run->volumes = dem_lines_measure(&run->lines, &run->p->columns, NULL);
+    dem_ball_columns_set(&run->p->columns, run->state.balls, run->state.count);
+    return dem_lines_measure(&run->lines, &run->p->columns, NULL, &run->volumes, error);
 }
 
 static dem_status polish(packing_run *run, size_t tangent_count, dem_error *error)
 {
-    dem_polish_options options = {.iterations = POLISH_STEPS, .tangent_count = tangent_count};
+    dem_polish_options options = {.iterations = getenv("PI")?atoi(getenv("PI")):POLISH_STEPS, .tangent_count = tangent_count};
     for (size_t k = 0; k < tangent_count; k++)
         options.tangent[k] = run->rows.rows[k];
     return dem_pack_polish(run->p, &run->lines, &run->state, options, &run->volumes, error);
@@ -133,7 +133,7 @@ static dem_status meet_moments(packing_run *run, size_t kept, bool *met, dem_err
     take_balls(&run->state, free_state);
     for (int k = 0; k < PROJECTIONS; k++) {
         DEM_TRY(dem_pack_project(p, &run->state, kept, &run->rows, met, error));
-        measure(run);
+        DEM_TRY(measure(run, error));
         if (!*met || k + 1 == PROJECTIONS)
             break;
         DEM_TRY(polish(run, kept, error));
@@ -188,7 +188,7 @@ static dem_status hand_over(packing_run *run, dem_pack *pack, dem_error *error)
     size_t dropped;
     DEM_TRY(rejoin(run, error));
     DEM_TRY(drop_hidden(run, &dropped, error));
-    measure(run);
+    DEM_TRY(measure(run, error));
     DEM_TRY(dem_moment_rows_set(run->p, state, kept[run->met], &run->rows, error));
     pack->balls = dem_alloc(state->count, sizeof *pack->balls);
     if (!pack->balls)
@@ -216,7 +216,7 @@ static dem_status pack_stages(packing_run *run, dem_pack *pack, dem_error *error
     dem_packing *p = run->p;
     DEM_TRY(dem_pack_state_init(p, &run->state, error));
     DEM_TRY(dem_moment_rows_init(p, &run->rows, error));
-    DEM_TRY(dem_lines_build(&p->grain, p->kernels, line_step, p->capacity, p->threads, &run->lines, error));
+    DEM_TRY(dem_lines_build(&p->grain, p->kernels, getenv("LH")?atof(getenv("LH")):line_step, p->capacity, p->threads, &run->lines, error));
     if (p->options->spheres == 1 && p->options->moments != DEM_MOMENTS_FREE) {
         p->charge.linear = true;
         place_one(&run->state);
@@ -224,7 +224,7 @@ static dem_status pack_stages(packing_run *run, dem_pack *pack, dem_error *error
         return hand_over(run, pack, error);
     }
     DEM_TRY(place(p, &run->state, error));
-    DEM_TRY(dem_pack_breathe(p, &run->state, p->effort.breaths, error));
+    DEM_TRY(dem_pack_breathe(p, &run->state, getenv("BR")?atoi(getenv("BR")):p->effort.breaths, error));
     p->charge.linear = true;
     DEM_TRY(dem_pack_relax(p, &run->state, settle_linear, error));
     DEM_TRY(dem_pack_join(p, &run->state, error));

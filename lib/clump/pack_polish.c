@@ -7,7 +7,7 @@
 #include "clump/pack_connect.h"
 #include "clump/pack_metric.h"
 
-enum { HISTORY = 12, TRIALS = 6, RESTARTS = 3, SLOW = 6 };
+enum { HISTORY = 12, TRIALS = 6, SLOW = 6 };
 
 static const double longest_move = 0.01;     // of a coordinate in one step [d_eq]
 static const double first_move = 0.002;      // of the first step [d_eq]
@@ -28,6 +28,9 @@ typedef struct descent {
     double *tangent[10];
     size_t tangent_count;
     double value;
+    dem_line_volumes volumes;       // where it was evaluated last
+    dem_status status;
+    dem_error *error;
 } descent;
 
 static double dot(const double *a, const double *b, size_t n)
@@ -87,8 +90,8 @@ static void add_links(descent *d, const dem_ball *balls, double *value)
     }
 }
 
-// the balls of scaled variables x, value and projected gradient there
-static double evaluate(descent *d, const double *x, double *g, dem_line_volumes *volumes)
+// the balls of scaled variables x, value and projected gradient there; INFINITY where it failed
+static double evaluate(descent *d, const double *x, double *g)
 {
     dem_pack_state *state = d->state;
     for (size_t i = 0; i < d->count; i++) {
@@ -96,16 +99,16 @@ static double evaluate(descent *d, const double *x, double *g, dem_line_volumes 
         metric_leave(d->p->factor[i], x + 4 * i, v);
         state->balls[i] = (dem_ball){v3(v[0], v[1], v[2]), fmax(v[3], dem_pack_smallest_radius)};
     }
-    dem_pack_set_columns(d->p, state);
-    dem_line_volumes at = dem_lines_measure(d->lines, &d->p->columns, d->slope);
-    double value = at.difference;
+    dem_ball_columns_set(&d->p->columns, state->balls, state->count);
+    d->status = dem_lines_measure(d->lines, &d->p->columns, d->slope, &d->volumes, d->error);
+    if (d->status != DEM_OK)
+        return INFINITY;
+    double value = d->volumes.difference;
     if (d->p->connected)
         add_links(d, state->balls, &value);
     for (size_t i = 0; i < d->count; i++)
         metric_gradient(d->p->factor[i], d->slope[i], g + 4 * i);
     project(d, g);
-    if (volumes)
-        *volumes = at;
     return value;
 }
 
@@ -131,7 +134,7 @@ static void set_tangent(descent *d, dem_polish_options options)
 }
 
 // two-loop recursion; without a history steepest descent of a modest length
-static double set_direction(descent *d, double eagerness)
+static double set_direction(descent *d)
 {
     double alpha[HISTORY], *v = d->direction;
     memcpy(v, d->g, d->size * sizeof *v);
@@ -139,7 +142,7 @@ static double set_direction(descent *d, double eagerness)
         alpha[k] = dot(d->move[k], v, d->size) / d->product[k];
         add_scaled(v, -alpha[k], d->change[k], d->size);
     }
-    double scale = eagerness;
+    double scale;
     if (d->history) {
         size_t k = d->history - 1;
         scale = d->product[k] / dot(d->change[k], d->change[k], d->size);
@@ -151,7 +154,7 @@ static double set_direction(descent *d, double eagerness)
             for (int a = 0; a < 4; a++)
                 longest = fmax(longest, fabs(move[a]));
         }
-        scale *= first_move / fmax(longest, 1e-300);
+        scale = first_move / fmax(longest, 1e-300);
     }
     for (size_t i = 0; i < d->size; i++)
         v[i] *= scale;
@@ -209,10 +212,10 @@ static void accept(descent *d)
 static bool search(descent *d, double promise, double *next)
 {
     double step = step_limit(d);
-    for (int k = 0; k < TRIALS; k++, step *= shorten) {
+    for (int k = 0; k < TRIALS && d->status == DEM_OK; k++, step *= shorten) {
         for (size_t i = 0; i < d->size; i++)
             d->next_x[i] = d->x[i] - step * d->direction[i];
-        *next = evaluate(d, d->next_x, d->next_g, NULL);
+        *next = evaluate(d, d->next_x, d->next_g);
         if (*next < d->value - sufficient * step * promise)
             return true;
     }
@@ -221,16 +224,15 @@ static bool search(descent *d, double promise, double *next)
 
 static void descend(descent *d, int iterations)
 {
-    double eagerness = 1;
-    int failures = 0, slow_steps = 0;
-    for (int it = 0; it < iterations && slow_steps < SLOW; it++) {
-        double promise = set_direction(d, eagerness), next;
+    bool failed = false;
+    int slow_steps = 0;
+    for (int it = 0; it < iterations && slow_steps < SLOW && d->status == DEM_OK; it++) {
+        double promise = set_direction(d), next;
         if (!(promise > 0) || !search(d, promise, &next)) {
             // the flux is not quite the derivative of the discrete sum: near the optimum searches fail
-            if (d->history == 0 && ++failures > RESTARTS)
+            if (failed || d->history == 0)
                 break;
-            if (d->history == 0)
-                eagerness *= 0.1;
+            failed = true;
             d->history = 0;
             continue;
         }
@@ -246,7 +248,7 @@ dem_status dem_pack_polish(dem_packing *p, dem_lines *lines, dem_pack_state *sta
 {
     dem_arena arena = {0};
     descent d = {.p = p, .lines = lines, .state = state, .count = state->count, .size = 4 * state->count,
-                 .tangent_count = options.tangent_count};
+                 .tangent_count = options.tangent_count, .error = error};
     dem_status status = take_work_space(&d, &arena, error);
     if (status == DEM_OK)
         status = dem_pack_metric(p, state, p->factor, error);
@@ -258,9 +260,14 @@ dem_status dem_pack_polish(dem_packing *p, dem_lines *lines, dem_pack_state *sta
         metric_enter(p->factor[i], v, d.x + 4 * i);
     }
     set_tangent(&d, options);
-    d.value = evaluate(&d, d.x, d.g, NULL);
-    descend(&d, options.iterations);
-    evaluate(&d, d.x, d.g, volumes);
+    d.value = evaluate(&d, d.x, d.g);
+    if (d.status == DEM_OK)
+        descend(&d, options.iterations);
+    if (d.status == DEM_OK)
+        evaluate(&d, d.x, d.g);
+    status = d.status;
+    if (volumes)
+        *volumes = d.volumes;
 done:
     dem_arena_release(&arena);
     return status;

@@ -41,12 +41,18 @@ static void split_chunks(dem_packing *p)
     }
 }
 
+static void take_columns(dem_packing *p, dem_ball_columns *columns, size_t padded)
+{
+    float **each[4] = {&columns->x, &columns->y, &columns->z, &columns->r};
+    for (int k = 0; k < 4; k++)
+        *each[k] = dem_arena_take(&p->arena, padded, sizeof(float));
+}
+
 static dem_status take_work_space(dem_packing *p, dem_error *error)
 {
     size_t n = p->capacity, padded = (n + DEM_LANES - 1) / DEM_LANES * DEM_LANES, blocks = p->samples.block_count;
-    float **columns[4] = {&p->columns.x, &p->columns.y, &p->columns.z, &p->columns.r};
-    for (int k = 0; k < 4; k++)
-        *columns[k] = dem_arena_take(&p->arena, padded, sizeof(float));
+    take_columns(p, &p->columns, padded);
+    take_columns(p, &p->tree_columns, padded);
     for (int k = 0; k < DEM_CHUNKS; k++) {
         dem_pack_chunk *chunk = &p->chunks[k];
         chunk->distance = dem_arena_take(&p->arena, padded, sizeof *chunk->distance);
@@ -59,8 +65,9 @@ static dem_status take_work_space(dem_packing *p, dem_error *error)
     p->near_size = dem_arena_take(&p->arena, blocks, sizeof *p->near_size);
     p->near_at = dem_arena_take(&p->arena, n, sizeof *p->near_at);
     p->links = dem_arena_take(&p->arena, n, sizeof *p->links);
-    p->link_gap = dem_arena_take(&p->arena, n, sizeof *p->link_gap);
-    p->link_nearest = dem_arena_take(&p->arena, n, sizeof *p->link_nearest);
+    p->tree_reach = dem_arena_take(&p->arena, padded, sizeof *p->tree_reach);
+    p->tree_nearest = dem_arena_take(&p->arena, padded, sizeof *p->tree_nearest);
+    p->tree_balls = dem_arena_take(&p->arena, n, sizeof *p->tree_balls);
     p->equations = dem_arena_take(&p->arena, n, sizeof *p->equations);
     p->factor = dem_arena_take(&p->arena, n, sizeof *p->factor);
     p->cost = dem_arena_take(&p->arena, n, sizeof *p->cost);

@@ -83,8 +83,12 @@ typedef struct dem_packing {
     dem_ball *near_at;           ///< [capacity] the balls the lists were made for
     double near_slack;           ///< lists hold while no ball has moved by more than half of it
     struct dem_link *links;      ///< [capacity]
-    double *link_gap;            ///< [capacity]
-    uint32_t *link_nearest;      ///< [capacity]
+    dem_ball *tree_balls;        ///< [capacity] those of the spanning tree found last
+    size_t tree_count;
+    double tree_overlap;         ///< the least of its links
+    dem_ball_columns tree_columns;
+    float *tree_reach;           ///< [capacity, padded]
+    int32_t *tree_nearest;       ///< [capacity, padded]
     double (*equations)[DEM_EQUATION];  ///< [capacity]
     double (*factor)[4][4];      ///< [capacity] of pack_metric.h
     double *cost;                ///< [capacity] of removing a ball
@@ -108,8 +112,7 @@ void dem_pack_state_remove(dem_pack_state *state, const bool *gone);
 bool dem_pack_ball_allowed(const dem_packing *p, dem_ball ball, dem_clearance *clearance);
 
 // samples and balls: pack_assign.c
-/// p->columns of these balls.
-void dem_pack_set_columns(dem_packing *p, const dem_pack_state *state);
+void dem_ball_columns_set(dem_ball_columns *columns, const dem_ball *balls, size_t count);
 /// f, owner and energy of every sample, after any change.
 dem_status dem_pack_assign(dem_packing *p, dem_pack_state *state, dem_error *error);
 /// The same for balls that have moved a little since the last `dem_pack_assign` of balls of the same numbers.
