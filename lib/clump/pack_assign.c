@@ -179,5 +179,5 @@ double dem_pack_gap_estimate(const dem_packing *p, const dem_pack_state *state)
             difference += w * fabs(f);
             outside += f < 0 ? -w * f : 0;
         }
-    return difference / (p->grain.moments.volume + outside);
+    return difference / (p->grain->moments.volume + outside);
 }

@@ -101,8 +101,8 @@ void dem_pack_insert(dem_packing *p, dem_pack_state *state, size_t count)
     }
 }
 
-// one breath, from `state` to `p->moved`
-static dem_status breathe(dem_packing *p, const dem_pack_state *state, bool *better, dem_error *error)
+// from `state` to `p->moved`
+static dem_status try_breath(dem_packing *p, const dem_pack_state *state, bool *better, dem_error *error)
 {
     dem_pack_state *moved = &p->moved;
     const dem_relax_options brief = {8, 0.02, 2e-4}, briefer = {4, 0.02, 2e-4}, test = {6, 0.02, 2e-4}, full = {20, 0.02, 2e-4};
@@ -129,15 +129,13 @@ static dem_status breathe(dem_packing *p, const dem_pack_state *state, bool *bet
     return DEM_OK;
 }
 
-dem_status dem_pack_breathe(dem_packing *p, dem_pack_state *state, int moves, dem_error *error)
+dem_status dem_pack_breathe(dem_packing *p, dem_pack_state *state, dem_error *error)
 {
-    for (int k = 0; k < moves; k++) {
-        bool better;
-        DEM_TRY(breathe(p, state, &better, error));
-        if (better && p->connected)
-            better = dem_pack_links(p, p->moved.balls, p->moved.count, dem_pack_overlap, p->links) == 0;
-        if (!better)
-            continue;
+    bool better;
+    DEM_TRY(try_breath(p, state, &better, error));
+    if (better && p->connected)
+        better = dem_pack_links(p, p->moved.balls, p->moved.count, dem_pack_overlap, p->links) == 0;
+    if (better) {
         dem_pack_state old = *state;
         *state = p->moved;
         p->moved = old;

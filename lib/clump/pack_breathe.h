@@ -7,7 +7,7 @@
 /// Adds up to `count` balls at places drawn by error, each the best of a few candidates; fewer where nothing helps.
 /// The state must be assigned, and stays so.
 void dem_pack_insert(dem_packing *p, dem_pack_state *state, size_t count);
-/// `moves` breaths. `state` must be assigned, and is at the end.
-dem_status dem_pack_breathe(dem_packing *p, dem_pack_state *state, int moves, dem_error *error);
+/// One breath. `state` must be assigned, and is at the end.
+dem_status dem_pack_breathe(dem_packing *p, dem_pack_state *state, dem_error *error);
 
 #endif

@@ -2,26 +2,27 @@
 
 #include <stdlib.h>
 
-enum { STACK = 128, SHRINKS = 12 };
+enum { SHRINKS = 12 };
+// Near the middle of a round grain all of its surface is as near: what is found so far has to do then.
+enum { MOST_LEAVES = 500 };
 
 static const double largest_radius = 0.6;        // a little more than that of the sphere of equal volume [d_eq]
 static const double smallest_candidate = 0.01;   // [d_eq]
 
-// The ball of radius r touching p from inside has its centre at p - r n. It comes no deeper than `depth` at s when
-// |s - c| >= r - depth; with e = p - s that is r <= (e.e - depth^2) / (2 (n.e - depth)) where n.e > depth.
-static double shrink(double r, dem_vec3 p, dem_vec3 n, dem_vec3 a, dem_vec3 b, dem_vec3 c, double depth)
+// Surface deeper than this inside a ball shrinks it, in radii. Without it every triangle of a fine round grain would.
+static const double tolerance = 2e-3;
+
+// The ball of radius r that touches p has its centre at p - r n. The one through s as well has r = e.e / (2 n.e), where
+// e = p - s.
+static double shrink(double r, dem_vec3 p, dem_vec3 n, dem_vec3 a, dem_vec3 b, dem_vec3 c)
 {
     for (int i = 0; i < SHRINKS; i++) {
         dem_vec3 centre = v3_along(p, -r, n);
-        dem_vec3 s = dem_triangle_closest(centre, a, b, c);
-        double free = r * (1 - 1e-4) - depth;
-        if (free <= 0 || v3_norm2(v3_sub(s, centre)) >= free * free)
+        dem_vec3 s = dem_triangle_closest(centre, a, b, c), e = v3_sub(p, s);
+        double free = r * (1 - tolerance), low = 2 * v3_dot(n, e);
+        if (v3_norm2(v3_sub(s, centre)) >= free * free || low <= 1e-12)
             break;
-        dem_vec3 e = v3_sub(p, s);
-        double low = v3_dot(n, e) - depth;
-        if (low <= 1e-12)
-            break;
-        double next = fmax(0, v3_norm2(e) - depth * depth) / (2 * low);
+        double next = v3_norm2(e) / low;
         if (next >= r * (1 - 1e-6))
             break;
         r = next;
@@ -31,17 +32,18 @@ static double shrink(double r, dem_vec3 p, dem_vec3 n, dem_vec3 a, dem_vec3 b, d
 
 // Shrinking ball (Ma, Bae & Choi 2012) in a single traversal: the balls are nested, so what one of them does not
 // reach none of the later ones does.
-double dem_medial_radius(const dem_tree *tree, dem_vec3 p, dem_vec3 n, double depth)
+double dem_medial_radius(const dem_tree *tree, dem_vec3 p, dem_vec3 n)
 {
     double r = largest_radius;
-    uint32_t stack[STACK];
-    int top = 0;
+    uint32_t stack[DEM_BOX_TREE_STACK];
+    int top = 0, leaves = 0;
     stack[top++] = 0;
-    while (top) {
+    while (top && leaves < MOST_LEAVES) {
         uint32_t at = stack[--top];
         const dem_tree_node *node = &tree->nodes[at];
         dem_vec3 centre = v3_along(p, -r, n);
-        if (box_distance2(&node->box, centre) >= r * r)
+        double free = r * (1 - tolerance);
+        if (box_distance2(&node->box, centre) >= free * free)
             continue;
         if (node->right) {
             uint32_t left = at + 1, right = node->right;
@@ -50,9 +52,10 @@ double dem_medial_radius(const dem_tree *tree, dem_vec3 p, dem_vec3 n, double de
             stack[top++] = left_first ? left : right;
             continue;
         }
+        leaves++;
         for (uint32_t i = node->begin; i < node->end; i++) {
             const uint32_t *t = tree->triangles + 3 * (size_t)tree->order[i];
-            r = shrink(r, p, n, tree->vertices[t[0]], tree->vertices[t[1]], tree->vertices[t[2]], depth);
+            r = shrink(r, p, n, tree->vertices[t[0]], tree->vertices[t[1]], tree->vertices[t[2]]);
         }
     }
     return r;
@@ -135,7 +138,7 @@ dem_status dem_candidates_build(const dem_pack_grain *grain, const dem_samples *
     dem_surface_spread(shell_corners, shell, shell->triangle_count, shell_area(shell), count, keep_touching, points);
 #pragma omp parallel for num_threads(threads) schedule(dynamic, 64)
     for (size_t i = 0; i < count; i++) {
-        points[i].radius = dem_medial_radius(&grain->tree, points[i].point, points[i].normal, 0);
+        points[i].radius = dem_medial_radius(&grain->tree, points[i].point, points[i].normal);
         points[i].block = nearest_block(samples, points[i].point);
     }
     dem_status status = sort_by_block(points, count, samples->surface_blocks, candidates, error);
@@ -173,13 +176,12 @@ static void sink(offer *heap, size_t count, size_t at)
 
 // lazy greedy (Minoux 1978): a gain is only computed again when its offer comes to the top
 static size_t take_best(offer *heap, size_t count, dem_lattice *lattice, const dem_pack_kernels *kernels, size_t most,
-                        double gap, dem_ball *chosen)
+                        dem_ball *chosen)
 {
     size_t taken = 0;
-    int64_t left = (int64_t)dem_lattice_difference(lattice), enough = (int64_t)(gap * (double)lattice->inside_count);
     for (size_t i = count / 2; i-- > 0;)
         sink(heap, count, i);
-    while (taken < most && count > 0 && (gap <= 0 || left > enough)) {
+    while (taken < most && count > 0) {
         int64_t gain = kernels->lattice_gain(lattice, heap[0].ball, NULL);
         if (gain < heap[0].gain) {
             heap[0].gain = gain;
@@ -189,7 +191,6 @@ static size_t take_best(offer *heap, size_t count, dem_lattice *lattice, const d
         if (gain <= 0)
             break;
         kernels->lattice_gain(lattice, heap[0].ball, lattice->covered);
-        left -= gain;
         chosen[taken++] = heap[0].ball;
         heap[0] = heap[--count];
         sink(heap, count, 0);
@@ -199,7 +200,7 @@ static size_t take_best(offer *heap, size_t count, dem_lattice *lattice, const d
 
 dem_status dem_candidates_greedy(const dem_candidates *candidates, dem_lattice *lattice,
                                  const dem_pack_kernels *kernels, const double *inflations, size_t inflation_count,
-                                 size_t most, double gap, int threads, dem_ball *chosen, size_t *chosen_count,
+                                 size_t most, int threads, dem_ball *chosen, size_t *chosen_count,
                                  dem_error *error)
 {
     size_t count = candidates->count * inflation_count;
@@ -213,7 +214,7 @@ dem_status dem_candidates_greedy(const dem_candidates *candidates, dem_lattice *
         ball.radius += inflations[i % inflation_count];
         heap[i] = (offer){kernels->lattice_gain(lattice, ball, NULL), ball};
     }
-    *chosen_count = take_best(heap, count, lattice, kernels, most, gap, chosen);
+    *chosen_count = take_best(heap, count, lattice, kernels, most, chosen);
     free(heap);
     return DEM_OK;
 }

@@ -80,14 +80,6 @@ void dem_lattice_release(dem_lattice *lattice)
     *lattice = (dem_lattice){0};
 }
 
-size_t dem_lattice_difference(const dem_lattice *lattice)
-{
-    size_t count = 0, words = lattice->word[columns_lines(&lattice->rows)];
-    for (size_t i = 0; i < words; i++)
-        count += (size_t)__builtin_popcountll(lattice->inside[i] ^ lattice->covered[i]);
-    return count;
-}
-
 void dem_lattice_clear(dem_lattice *lattice)
 {
     memset(lattice->covered, 0, lattice->word[columns_lines(&lattice->rows)] * sizeof *lattice->covered);

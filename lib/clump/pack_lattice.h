@@ -18,8 +18,6 @@ typedef struct dem_lattice {
 dem_status dem_lattice_build(const dem_pack_grain *grain, size_t points, dem_lattice *lattice, dem_error *error);
 void dem_lattice_release(dem_lattice *lattice);
 
-/// Points that are either inside or covered but not both.
-size_t dem_lattice_difference(const dem_lattice *lattice);
 void dem_lattice_clear(dem_lattice *lattice);
 /// Every k-th inside point, such that there are about `count`; returns how many were written.
 size_t dem_lattice_sample(const dem_lattice *lattice, size_t count, dem_vec3 *points);

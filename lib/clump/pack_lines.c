@@ -9,7 +9,6 @@
 #include "base/status.h"
 
 static const double margin = 0.1;                      // lines are kept this far around the grain's shadow [d_eq]
-static const double offsets[2] = {0.38197, 0.2764};    // generic place of the grids
 static const float far_away = 1e9f;
 
 static uint32_t strips_of(const dem_columns *c, int32_t row)
@@ -113,8 +112,8 @@ static dem_status take_work_space(dem_lines *lines, dem_error *error)
     return lines->arena.failed ? dem_fail_memory(error) : DEM_OK;
 }
 
-dem_status dem_lines_build(const dem_pack_grain *grain, const dem_pack_kernels *kernels, double step, size_t capacity,
-                           int threads, dem_lines *lines, dem_error *error)
+dem_status dem_lines_build(const dem_pack_grain *grain, const dem_pack_kernels *kernels, double step,
+                           const double offsets[2], size_t capacity, int threads, dem_lines *lines, dem_error *error)
 {
     *lines = (dem_lines){.kernels = kernels, .capacity = capacity, .threads = threads};
     dem_status status = DEM_OK;

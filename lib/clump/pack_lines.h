@@ -29,9 +29,9 @@ typedef struct dem_line_volumes {
     double gap;                      ///< 1 - intersection / union
 } dem_line_volumes;
 
-/// `step` between lines [d_eq].
-dem_status dem_lines_build(const dem_pack_grain *grain, const dem_pack_kernels *kernels, double step, size_t capacity,
-                           int threads, dem_lines *lines, dem_error *error);
+/// `step` between lines [d_eq]; `offsets` place the grids, in steps.
+dem_status dem_lines_build(const dem_pack_grain *grain, const dem_pack_kernels *kernels, double step,
+                           const double offsets[2], size_t capacity, int threads, dem_lines *lines, dem_error *error);
 void dem_lines_release(dem_lines *lines);
 
 /// `gradient` of the symmetric difference to (x, y, z, r) of each ball; NULL: not wanted.

@@ -3,7 +3,6 @@
 #include "base/status.h"
 
 static const double own_damping = 0.05;     // of a block's mean eigenvalue
-static const double mean_damping = 0.01;    // of that of all blocks
 
 static double trace(const double equation[DEM_EQUATION])
 {
@@ -28,13 +27,18 @@ static void set_factor(const double equation[DEM_EQUATION], double least, double
     }
 }
 
-dem_status dem_pack_metric(dem_packing *p, dem_pack_state *state, double (*factor)[4][4], dem_error *error)
+void dem_pack_metric_set(dem_packing *p, size_t count, double evenness)
+{
+    double mean = 0;
+    for (size_t i = 0; i < count; i++)
+        mean += trace(p->equations[i]) / (4 * (double)count);
+    for (size_t i = 0; i < count; i++)
+        set_factor(p->equations[i], evenness * mean, p->factor[i]);
+}
+
+dem_status dem_pack_metric(dem_packing *p, dem_pack_state *state, dem_error *error)
 {
     DEM_TRY(dem_pack_equations(p, state, error));
-    double mean = 0;
-    for (size_t i = 0; i < state->count; i++)
-        mean += trace(p->equations[i]) / (4 * (double)state->count);
-    for (size_t i = 0; i < state->count; i++)
-        set_factor(p->equations[i], mean_damping * mean, factor[i]);
+    dem_pack_metric_set(p, state->count, dem_metric_evenness);
     return DEM_OK;
 }

@@ -4,10 +4,15 @@
 
 #include "clump/packing.h"
 
-/// Lower Cholesky factor L of each ball's Gauss-Newton matrix, damped so that no direction is free; the state is
+/// p->factor: lower Cholesky factor L of each ball's Gauss-Newton matrix, damped so that no direction is free; the state is
 /// assigned. Scaled variables are y = L^T (x, y, z, r). The matrix has weights 1/|f| (p->charge must be linear): the
 /// second derivative of the symmetric difference comes from the curves where the two surfaces cross, there f = 0.
-dem_status dem_pack_metric(dem_packing *p, dem_pack_state *state, double (*factor)[4][4], dem_error *error);
+dem_status dem_pack_metric(dem_packing *p, dem_pack_state *state, dem_error *error);
+/// The same from p->equations as they are. `evenness` (the default is dem_metric_evenness) is what share of the mean
+/// eigenvalue every direction has at least: the larger, the more evenly a move is spread over the balls.
+void dem_pack_metric_set(dem_packing *p, size_t count, double evenness);
+
+static const double dem_metric_evenness = 0.01;
 
 /// y = L^-1 v: gradients into the scaled variables.
 static inline void metric_gradient(double (*l)[4], const double v[4], double y[4])

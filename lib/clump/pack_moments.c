@@ -13,6 +13,11 @@ static const double met_residual = 1e-11;   // well below what is promised, well
 static const double promised = 1e-9;
 static const double longest_move = 0.02;    // in one step [d_eq]
 static const double radius_share = 0.15;    // of the radius, likewise
+static const double bold = 0.3;             // a step shortened to less spreads the next ones more evenly
+static const double most_even = 10;
+static const double least_damping = 1e-9, most_damping = 1e3;
+static const double shaken = 0.02;          // of a radius
+static const double singular = 1e-12;       // of a pivot, against the largest
 
 static const int first_of[6] = {0, 1, 2, 0, 0, 1}, second_of[6] = {0, 1, 2, 1, 2, 2};
 
@@ -65,16 +70,17 @@ dem_status dem_moment_rows_set(dem_packing *p, const dem_pack_state *state, size
     dem_ball_union u;
     DEM_TRY(dem_ball_union_compute(state->balls, state->count, false, &u, error));
     double want[DEM_MOMENT_COUNT], have[DEM_MOMENT_COUNT];
-    const dem_moments *m = &p->grain.moments;
+    const dem_moments *m = &p->grain->moments;
     list_moments(*m, want);
     list_moments(u.moments, have);
     double gyration2 = (m->second.xx + m->second.yy + m->second.zz) / m->volume;
     rows->kept = kept;
-    rows->residual = 0;
+    rows->residual = rows->merit = 0;
     for (size_t k = 0; k < kept; k++) {
-        double scale = m->volume * (k == 0 ? 1 : k < 4 ? sqrt(gyration2) : gyration2);
+        rows->scale[k] = m->volume * (k == 0 ? 1 : k < 4 ? sqrt(gyration2) : gyration2);
         rows->lack[k] = want[k] - have[k];
-        rows->residual = fmax(rows->residual, fabs(rows->lack[k]) / scale);
+        rows->residual = fmax(rows->residual, fabs(rows->lack[k]) / rows->scale[k]);
+        rows->merit += rows->lack[k] * rows->lack[k] / (rows->scale[k] * rows->scale[k]);
     }
     for (size_t i = 0; i < state->count; i++)
         set_gradients(state->balls[i], &u.patches[i], i, rows);
@@ -82,18 +88,15 @@ dem_status dem_moment_rows_set(dem_packing *p, const dem_pack_state *state, size
     return DEM_OK;
 }
 
-// solves the symmetric system a x = b of size n by elimination with pivots; false: singular
-static bool solve(double a[DEM_MOMENT_COUNT][DEM_MOMENT_COUNT + 1], size_t n)
+// solves the symmetric system a x = b by elimination; false: there is a pivot below `least`
+static bool solve(double a[DEM_MOMENT_COUNT][DEM_MOMENT_COUNT + 1], size_t n, double least)
 {
-    double largest = 0;
-    for (size_t i = 0; i < n; i++)
-        largest = fmax(largest, a[i][i]);
     for (size_t q = 0; q < n; q++) {
         size_t pivot = q;
         for (size_t i = q + 1; i < n; i++)
             if (fabs(a[i][q]) > fabs(a[pivot][q]))
                 pivot = i;
-        if (!(fabs(a[pivot][q]) > 1e-12 * largest))
+        if (!(fabs(a[pivot][q]) > least))
             return false;
         for (size_t k = 0; k <= n; k++) {
             double swap = a[q][k];
@@ -111,72 +114,134 @@ static bool solve(double a[DEM_MOMENT_COUNT][DEM_MOMENT_COUNT + 1], size_t n)
     return true;
 }
 
-// the move of least cost that makes up for the lack to first order, shortened where it is bold; false: there is none
-static bool step(dem_pack_state *state, const dem_moment_rows *rows, double (*factor)[4][4])
+// Multipliers of the moments' gradients in the move of least cost that makes up for the lack to first order; with
+// damping less of what is hard to make up for.
+static bool set_multipliers(const dem_packing *p, const dem_pack_state *state, const dem_moment_rows *rows,
+                            double damping, double multiplier[DEM_MOMENT_COUNT])
 {
     size_t n = rows->kept;
-    double a[DEM_MOMENT_COUNT][DEM_MOMENT_COUNT + 1] = {{0}};
+    double a[DEM_MOMENT_COUNT][DEM_MOMENT_COUNT + 1] = {{0}}, largest = 0;
     for (size_t i = 0; i < state->count; i++) {
         double scaled[DEM_MOMENT_COUNT][4];
         for (size_t k = 0; k < n; k++)
-            metric_gradient(factor[i], rows->rows[k][i], scaled[k]);
+            metric_gradient(p->factor[i], rows->rows[k][i], scaled[k]);
         for (size_t k = 0; k < n; k++)
             for (size_t l = 0; l < n; l++)
                 for (int d = 0; d < 4; d++)
                     a[k][l] += scaled[k][d] * scaled[l][d];
     }
+    for (size_t k = 0; k < n; k++) {
+        for (size_t l = 0; l < n; l++)
+            a[k][l] /= rows->scale[k] * rows->scale[l];
+        largest = fmax(largest, a[k][k]);
+        a[k][n] = rows->lack[k] / rows->scale[k];
+    }
     for (size_t k = 0; k < n; k++)
-        a[k][n] = rows->lack[k];
-    if (!solve(a, n))
+        a[k][k] += damping * largest;
+    if (!solve(a, n, singular * largest))
         return false;
-    double shorten = 1;
-    for (int pass = 0; pass < 2; pass++)
-        for (size_t i = 0; i < state->count; i++) {
-            double y[4] = {0, 0, 0, 0}, move[4], longest = 0;
-            for (size_t k = 0; k < n; k++) {
-                double scaled[4];
-                metric_gradient(factor[i], rows->rows[k][i], scaled);
-                for (int d = 0; d < 4; d++)
-                    y[d] += a[k][n] * scaled[d];
-            }
-            metric_leave(factor[i], y, move);
-            for (int d = 0; d < 4; d++)
-                longest = fmax(longest, fabs(move[d]));
-            dem_ball *ball = &state->balls[i];
-            if (pass == 0) {
-                shorten = fmin(shorten, fmin(longest_move, radius_share * ball->radius) / fmax(longest, 1e-300));
-            } else {
-                ball->centre = v3_along(ball->centre, shorten, v3(move[0], move[1], move[2]));
-                ball->radius += shorten * move[3];
-            }
-        }
+    for (size_t k = 0; k < n; k++)
+        multiplier[k] = a[k][n] / rows->scale[k];
     return true;
 }
 
-dem_status dem_pack_project(dem_packing *p, dem_pack_state *state, size_t kept, dem_moment_rows *rows, bool *met,
-                            dem_error *error)
+static void ball_move(const dem_packing *p, size_t i, const dem_moment_rows *rows, const double *multiplier,
+                      double move[4])
 {
-    dem_status status = dem_pack_metric(p, state, p->factor, error);
-    dem_ball *before = dem_alloc(state->count, sizeof *before);
-    if (status == DEM_OK && !before)
-        status = dem_fail_memory(error);
-    if (status != DEM_OK)
-        goto done;
-    memcpy(before, state->balls, state->count * sizeof *before);
-    double last = INFINITY;
-    for (int k = 0; k <= MOST_STEPS; k++) {
-        status = dem_moment_rows_set(p, state, kept, rows, error);
-        // the last digits come and go: stop when a step in that range no longer helps
-        if (status != DEM_OK || rows->residual < met_residual || (rows->residual < promised && rows->residual > last / 2))
-            break;
-        last = rows->residual;
-        if (k == MOST_STEPS || !step(state, rows, p->factor))
-            break;
+    double sum[4] = {0, 0, 0, 0}, y[4];
+    for (size_t k = 0; k < rows->kept; k++)
+        for (int d = 0; d < 4; d++)
+            sum[d] += multiplier[k] * rows->rows[k][i][d];
+    metric_gradient(p->factor[i], sum, y);
+    metric_leave(p->factor[i], y, move);
+}
+
+// one Newton step, shortened where it is bold; `taken` is the part of it that was left. False: there is none
+static bool step(const dem_packing *p, dem_pack_state *state, const dem_moment_rows *rows, double damping, double *taken)
+{
+    double multiplier[DEM_MOMENT_COUNT], move[4];
+    if (!set_multipliers(p, state, rows, damping, multiplier))
+        return false;
+    *taken = 1;
+    for (size_t i = 0; i < state->count; i++) {
+        double longest = 1e-300;
+        ball_move(p, i, rows, multiplier, move);
+        for (int d = 0; d < 4; d++)
+            longest = fmax(longest, fabs(move[d]));
+        *taken = fmin(*taken, fmin(longest_move, radius_share * state->balls[i].radius) / longest);
     }
+    for (size_t i = 0; i < state->count; i++) {
+        dem_ball *ball = &state->balls[i];
+        ball_move(p, i, rows, multiplier, move);
+        ball->centre = v3_along(ball->centre, *taken, v3(move[0], move[1], move[2]));
+        ball->radius += *taken * move[3];
+    }
+    return true;
+}
+
+// Levenberg (1944) on the lacks: undamped as long as the steps get nearer. `trial` gets the gradients of the step tried.
+static dem_status newton(dem_packing *p, dem_pack_state *state, size_t kept, dem_moment_rows *rows,
+                         dem_moment_rows *trial, dem_ball *before, dem_error *error)
+{
+    double taken = 1, evenness = dem_metric_evenness, damping = 0;
+    DEM_TRY(dem_pack_metric(p, state, error));
+    DEM_TRY(dem_moment_rows_set(p, state, kept, rows, error));
+    for (int k = 0; k < MOST_STEPS && rows->residual >= met_residual && damping < most_damping; k++) {
+        memcpy(before, state->balls, state->count * sizeof *before);
+        if (!step(p, state, rows, damping, &taken)) {
+            damping = fmax(10 * damping, least_damping);
+            continue;
+        }
+        DEM_TRY(dem_moment_rows_set(p, state, kept, trial, error));
+        if (trial->merit < rows->merit) {
+            dem_moment_rows better = *trial;
+            *trial = *rows;
+            *rows = better;
+            damping = damping > least_damping ? damping / 10 : 0;
+        } else {
+            memcpy(state->balls, before, state->count * sizeof *before);
+            if (rows->residual < promised)  // the last digits come and go
+                break;
+            damping = fmax(10 * damping, least_damping);
+        }
+        if (taken < bold && evenness < most_even) {
+            evenness *= 3;
+            dem_pack_metric_set(p, state->count, evenness);
+        }
+    }
+    return DEM_OK;
+}
+
+// off the places where a symmetric clump cannot change a moment to first order
+static void shake(dem_packing *p, dem_pack_state *state)
+{
+    for (size_t i = 0; i < state->count; i++) {
+        dem_vec3 d = v3(random_uniform(&p->random) - 0.5, random_uniform(&p->random) - 0.5, random_uniform(&p->random) - 0.5);
+        state->balls[i].centre = v3_along(state->balls[i].centre, shaken * state->balls[i].radius, d);
+    }
+}
+
+dem_status dem_pack_project(dem_packing *p, dem_pack_state *state, size_t kept, dem_moment_rows *rows,
+                            dem_moment_rows *spare, bool *met, dem_error *error)
+{
+    size_t bytes = state->count * sizeof(dem_ball);
+    dem_ball *before = dem_alloc(3 * state->count, sizeof *before);
+    if (!before)
+        return dem_fail_memory(error);
+    dem_ball *last = before + state->count, *nearest = last + state->count;
+    memcpy(before, state->balls, bytes);
+    dem_status status = newton(p, state, kept, rows, spare, last, error);
     *met = rows->residual < promised;
-    if (status == DEM_OK && !*met)
-        memcpy(state->balls, before, state->count * sizeof *before);
-done:
+    if (status == DEM_OK && !*met) {
+        double merit = rows->merit;
+        memcpy(nearest, state->balls, bytes);
+        memcpy(state->balls, before, bytes);
+        shake(p, state);
+        status = newton(p, state, kept, rows, spare, last, error);
+        *met = rows->residual < promised;
+        if (!*met && merit < rows->merit)
+            memcpy(state->balls, nearest, bytes);
+    }
     free(before);
     return status;
 }

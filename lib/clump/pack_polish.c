@@ -7,13 +7,12 @@
 #include "clump/pack_connect.h"
 #include "clump/pack_metric.h"
 
-enum { HISTORY = 12, TRIALS = 6, SLOW = 6 };
+enum { HISTORY = 12, TRIALS = 6, LOOK_EVERY = 5 };
 
 static const double longest_move = 0.01;     // of a coordinate in one step [d_eq]
 static const double first_move = 0.002;      // of the first step [d_eq]
 static const double sufficient = 1e-4;       // Armijo's share of the promised decrease
 static const double shorten = 0.4;           // a step that failed
-static const double slow = 3e-5;             // a step that gains less than this part counts as slow
 static const double link_stiffness = 20;     // of a link against volume [-]
 
 typedef struct descent {
@@ -222,11 +221,16 @@ static bool search(descent *d, double promise, double *next)
     return false;
 }
 
-static void descend(descent *d, int iterations)
+static void descend(descent *d, dem_polish_options options)
 {
     bool failed = false;
-    int slow_steps = 0;
-    for (int it = 0; it < iterations && slow_steps < SLOW && d->status == DEM_OK; it++) {
+    double mark = d->value;    // at the last look
+    for (int it = 0; it < options.iterations && d->status == DEM_OK; it++) {
+        if (it && it % LOOK_EVERY == 0) {
+            if (mark - d->value < options.tolerance * d->value)
+                break;
+            mark = d->value;
+        }
         double promise = set_direction(d), next;
         if (!(promise > 0) || !search(d, promise, &next)) {
             // the flux is not quite the derivative of the discrete sum: near the optimum searches fail
@@ -237,7 +241,6 @@ static void descend(descent *d, int iterations)
             continue;
         }
         remember(d);
-        slow_steps = d->value - next < slow * d->value ? slow_steps + 1 : 0;
         accept(d);
         d->value = next;
     }
@@ -251,7 +254,7 @@ dem_status dem_pack_polish(dem_packing *p, dem_lines *lines, dem_pack_state *sta
                  .tangent_count = options.tangent_count, .error = error};
     dem_status status = take_work_space(&d, &arena, error);
     if (status == DEM_OK)
-        status = dem_pack_metric(p, state, p->factor, error);
+        status = dem_pack_metric(p, state, error);
     if (status != DEM_OK)
         goto done;
     for (size_t i = 0; i < d.count; i++) {
@@ -262,7 +265,7 @@ dem_status dem_pack_polish(dem_packing *p, dem_lines *lines, dem_pack_state *sta
     set_tangent(&d, options);
     d.value = evaluate(&d, d.x, d.g);
     if (d.status == DEM_OK)
-        descend(&d, options.iterations);
+        descend(&d, options);
     if (d.status == DEM_OK)
         evaluate(&d, d.x, d.g);
     status = d.status;

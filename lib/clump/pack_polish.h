@@ -7,6 +7,7 @@
 
 typedef struct dem_polish_options {
     int iterations;
+    double tolerance;   ///< stop when five steps gain less than this part of the difference
     /// Rows of 4 per ball that steps must leave alone, to first order; `tangent_count` of them.
     double (*tangent[10])[4];
     size_t tangent_count;

@@ -63,9 +63,9 @@ bool dem_pack_ball_allowed(const dem_packing *p, dem_ball ball, dem_clearance *c
     if (clearance->distance >= 0 && clearance->inside && surely_allowed(ball, clearance->distance - moved))
         return true;
     double limit = clearance->distance >= 0 ? (clearance->distance + moved) * (1 + 1e-9) + 1e-9 : INFINITY;
-    clearance->distance = dem_tree_closest(&p->grain.tree, ball.centre, limit, NULL, NULL);
+    clearance->distance = dem_tree_closest(&p->grain->tree, ball.centre, limit, NULL, NULL);
     clearance->at = ball.centre;
-    clearance->inside = dem_tree_inside(&p->grain.tree, ball.centre);
+    clearance->inside = dem_tree_inside(&p->grain->tree, ball.centre);
     return ball.radius <= largest_ratio * clearance->distance + ratio_free &&
            (clearance->inside || clearance->distance <= farthest_outside);
 }

@@ -12,11 +12,24 @@ enum { FEWEST_CANDIDATES = 3000, CANDIDATES_PER_SPHERE = 3 };
 
 static const double softening = 0.0015;  // below this depth a sample's charge turns from |f|^p to f^2 [d_eq]
 
-static const dem_pack_effort efforts[] = {
-    [DEM_EFFORT_FAST] = {.prune_share = 0.06, .prune_iterations = 6, .breaths = 0},
-    [DEM_EFFORT_DEFAULT] = {.prune_share = 0.03, .prune_iterations = 8, .breaths = 60},
-    [DEM_EFFORT_BEST] = {.prune_share = 0.03, .prune_iterations = 8, .breaths = 1000},
-};
+// One breath costs about as much as the balls it relaxes: their number goes down as that of the balls goes up.
+static dem_pack_effort effort_for(dem_effort effort, size_t balls)
+{
+    static const struct {
+        dem_pack_effort each;
+        double breathing;    // breaths times balls
+        int most_breaths;
+    } levels[] = {
+        [DEM_EFFORT_FAST] = {{.prune_share = 0.06, .prune_iterations = 6, .polish_steps = 15, .polish_tolerance = 2e-3, .line_density = 25}, 1000, 50},
+        [DEM_EFFORT_DEFAULT] = {{.prune_share = 0.03, .prune_iterations = 8, .polish_steps = 80, .polish_tolerance = 3e-4, .line_density = 40}, 5000, 250},
+        [DEM_EFFORT_BEST] = {{.prune_share = 0.03, .prune_iterations = 8, .polish_steps = 200, .polish_tolerance = 5e-5, .line_density = 60}, 60000, 2000},
+    };
+    dem_pack_effort bought = levels[effort].each;
+    bought.breaths = (int)(levels[effort].breathing / (double)balls);
+    if (bought.breaths > levels[effort].most_breaths)
+        bought.breaths = levels[effort].most_breaths;
+    return bought;
+}
 
 static size_t at_least(size_t a, size_t b)
 {
@@ -79,25 +92,23 @@ static dem_status take_work_space(dem_packing *p, dem_error *error)
     return dem_pack_state_init(p, &p->moved, error);
 }
 
-dem_status dem_packing_open(const dem_ctx *ctx, const dem_mesh *mesh, const dem_pack_options *options,
+dem_status dem_packing_open(const dem_ctx *ctx, const dem_pack_grain *grain, const dem_pack_options *options,
                             const dem_pack_kernels *kernels, dem_packing *p, dem_error *error)
 {
     size_t n = options->spheres;
-    *p = (dem_packing){.ctx = ctx, .options = options, .threads = dem_threads(ctx),
+    *p = (dem_packing){.ctx = ctx, .options = options, .grain = grain, .threads = dem_threads(ctx),
                        .kernels = kernels ? kernels : dem_pack_kernels_choose(NULL),
-                       .random = random_stream(options->seed, 0), .connected = true, .effort = efforts[options->effort], .stiffness = 0.5,
+                       .random = random_stream(options->seed, 0), .connected = true, .effort = effort_for(options->effort, n), .stiffness = 0.5,
                        .charge = {.softening = (float)(softening * softening / 4), .inside = 1, .outside = 1}};
     size_t surface = at_least(FEWEST_SAMPLES, BASE_SAMPLES + SAMPLES_PER_SPHERE * n);
     if (surface > MOST_SAMPLES)
         surface = MOST_SAMPLES;
     p->capacity = 2 * n + 64;
-    dem_status status = dem_pack_grain_open(mesh, &p->grain, error);
+    dem_status status = dem_lattice_build(grain, at_least(FEWEST_POINTS, POINTS_PER_SPHERE * n), &p->lattice, error);
     if (status == DEM_OK)
-        status = dem_lattice_build(&p->grain, at_least(FEWEST_POINTS, POINTS_PER_SPHERE * n), &p->lattice, error);
+        status = dem_samples_build(grain, &p->lattice, surface, INTERIOR_SAMPLES, &p->samples, error);
     if (status == DEM_OK)
-        status = dem_samples_build(&p->grain, &p->lattice, surface, INTERIOR_SAMPLES, &p->samples, error);
-    if (status == DEM_OK)
-        status = dem_candidates_build(&p->grain, &p->samples, at_least(FEWEST_CANDIDATES, CANDIDATES_PER_SPHERE * n),
+        status = dem_candidates_build(grain, &p->samples, at_least(FEWEST_CANDIDATES, CANDIDATES_PER_SPHERE * n),
                                       p->threads, &p->candidates, error);
     if (status == DEM_OK) {
         split_chunks(p);
@@ -119,6 +130,5 @@ void dem_packing_close(dem_packing *p)
     dem_candidates_release(&p->candidates);
     dem_samples_release(&p->samples);
     dem_lattice_release(&p->lattice);
-    dem_pack_grain_close(&p->grain);
     *p = (dem_packing){0};
 }

@@ -48,11 +48,14 @@ typedef struct dem_pack_chunk {
     bool failed;                 ///< out of memory
 } dem_pack_chunk;
 
-/// What an effort buys.
+/// What an effort buys for the number of balls at hand.
 typedef struct dem_pack_effort {
     double prune_share;      ///< of the balls removed at a time
     int prune_iterations;    ///< of relaxation after each
     int breaths;
+    int polish_steps;
+    double polish_tolerance;
+    double line_density;     ///< lines of each axis per ball
 } dem_pack_effort;
 
 typedef struct dem_packing {
@@ -62,7 +65,7 @@ typedef struct dem_packing {
     int threads;
     dem_random random;
     dem_pack_effort effort;
-    dem_pack_grain grain;
+    const dem_pack_grain *grain;
     dem_lattice lattice;
     dem_samples samples;
     dem_candidates candidates;
@@ -98,7 +101,7 @@ typedef struct dem_packing {
     dem_pack_state moved;        ///< of `dem_pack_breathe`
 } dem_packing;
 
-dem_status dem_packing_open(const dem_ctx *ctx, const dem_mesh *mesh, const dem_pack_options *options,
+dem_status dem_packing_open(const dem_ctx *ctx, const dem_pack_grain *grain, const dem_pack_options *options,
                             const dem_pack_kernels *kernels, dem_packing *p, dem_error *error);
 void dem_packing_close(dem_packing *p);
 

@@ -1,0 +1,265 @@
+#include "clump/pack_stages.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/status.h"
+#include "clump/pack_breathe.h"
+#include "clump/pack_connect.h"
+#include "clump/pack_polish.h"
+#include "clump/pack_prune.h"
+
+enum { START_FACTOR = 2 };     // balls under way at first, per ball asked for
+enum { PROJECTIONS = 3 };      // with descent along the constraints in between
+enum { REJOINS = 30 };
+
+// progress at the end of each stage
+static const double placed = 0.3, breathed = 0.7, fitted = 0.85, kept_moments = 0.98;
+
+static const dem_relax_options settle = {40, 0.02, 2e-5}, settle_linear = {40, 0.05, 1e-5};
+
+// what exact moments may cost: gap <= free gap * (1 + share) + part
+static const double dearest_share = 0.25, dearest_part = 0.03;
+static const double exact_residual = 1e-9;     // moments met
+static const double least_exposed = 1e-9;      // of a ball's own surface, for it to add anything
+static const double line_offsets[2] = {0.38197, 0.2764};    // generic place of the lines, in steps
+
+// between lines [d_eq]: so many lines of each axis per ball, in bounds
+static double line_step(const dem_pack_grain *grain, double density, size_t balls)
+{
+    const double widest = 0.0125, narrowest = 0.005, most_lines = 150000;
+    double shadow = grain->area / 4;   // mean over directions, of a convex grain (Cauchy)
+    double step = fmin(widest, fmax(narrowest, sqrt(shadow / (density * (double)balls))));
+    return fmax(step, sqrt(shadow / most_lines));
+}
+
+dem_status dem_pack_stages_open(const dem_ctx *ctx, const dem_pack_grain *grain, const dem_pack_options *options,
+                                const dem_pack_kernels *kernels, dem_pack_stages *run, dem_error *error)
+{
+    memset(run, 0, sizeof *run);
+    dem_packing *p = &run->p;
+    DEM_TRY(dem_packing_open(ctx, grain, options, kernels, p, error));
+    dem_status status = dem_pack_state_init(p, &run->state, error);
+    if (status == DEM_OK)
+        status = dem_moment_rows_init(p, &run->rows, error);
+    if (status == DEM_OK)
+        status = dem_moment_rows_init(p, &run->spare_rows, error);
+    if (status == DEM_OK)
+        status = dem_lines_build(grain, p->kernels, line_step(grain, p->effort.line_density, options->spheres),
+                                 line_offsets, p->capacity, p->threads, &run->lines, error);
+    if (status != DEM_OK)
+        dem_pack_stages_close(run);
+    return status;
+}
+
+void dem_pack_stages_close(dem_pack_stages *run)
+{
+    dem_lines_release(&run->lines);
+    dem_packing_close(&run->p);
+}
+
+dem_status dem_pack_report(const dem_packing *p, double fraction, dem_error *error)
+{
+    if (dem_progress(p->ctx, "packing", fraction))
+        return dem_fail(error, DEM_INTERRUPTED, "packing was interrupted");
+    return DEM_OK;
+}
+
+// the ball to fall back on where nothing was found worth its place
+static dem_ball plain_ball(const dem_packing *p)
+{
+    dem_ball best = {.radius = 0};
+    for (size_t i = 0; i < p->candidates.count; i++)
+        if (p->candidates.balls[i].radius > best.radius)
+            best = p->candidates.balls[i];
+    return best.radius > 0 ? best : (dem_ball){v3(0, 0, 0), 0.1};
+}
+
+// inserts and relaxes until there are `count` balls or none helps
+static dem_status grow_to(dem_packing *p, dem_pack_state *state, size_t count, dem_error *error)
+{
+    while (state->count < count) {
+        size_t before = state->count, some = 1 + before / 4;
+        DEM_TRY(dem_pack_assign(p, state, error));
+        dem_pack_insert(p, state, some < count - before ? some : count - before);
+        if (state->count == before)
+            break;
+        DEM_TRY(dem_pack_relax(p, state, (dem_relax_options){10, 0.02, 2e-4}, error));
+    }
+    return DEM_OK;
+}
+
+dem_status dem_pack_resize(dem_pack_stages *run, size_t count, dem_error *error)
+{
+    DEM_TRY(grow_to(&run->p, &run->state, count, error));
+    DEM_TRY(dem_pack_prune_to(&run->p, &run->state, count, error));
+    DEM_TRY(dem_pack_relax(&run->p, &run->state, run->p.charge.linear ? settle_linear : settle, error));
+    return dem_pack_join(&run->p, &run->state, error);
+}
+
+dem_status dem_pack_place(dem_pack_stages *run, dem_error *error)
+{
+    dem_packing *p = &run->p;
+    dem_pack_state *state = &run->state;
+    size_t wanted = p->options->spheres;
+    DEM_TRY(dem_pack_report(p, 0, error));
+    DEM_TRY(dem_candidates_greedy(&p->candidates, &p->lattice, p->kernels, p->inflations, p->inflation_count,
+                                  START_FACTOR * wanted, p->threads, state->balls, &state->count, error));
+    for (size_t i = 0; i < state->count; i++)
+        state->clearances[i].distance = -1;
+    if (state->count == 0)
+        dem_pack_state_add(state, plain_ball(p));
+    DEM_TRY(dem_pack_relax(p, state, (dem_relax_options){15, 0.02, 2e-5}, error));
+    DEM_TRY(dem_pack_resize(run, wanted, error));
+    DEM_TRY(dem_pack_report(p, placed, error));
+    DEM_TRY(dem_pack_assign(p, state, error));
+    for (int k = 0; k < p->effort.breaths; k++) {
+        DEM_TRY(dem_pack_breathe(p, state, error));
+        DEM_TRY(dem_pack_report(p, placed + (breathed - placed) * k / p->effort.breaths, error));
+    }
+    return DEM_OK;
+}
+
+dem_status dem_pack_measure(dem_pack_stages *run, dem_error *error)
+{
+    dem_ball_columns_set(&run->p.columns, run->state.balls, run->state.count);
+    return dem_lines_measure(&run->lines, &run->p.columns, NULL, &run->volumes, error);
+}
+
+static dem_status polish(dem_pack_stages *run, size_t tangent_count, dem_error *error)
+{
+    dem_polish_options options = {.iterations = run->p.effort.polish_steps, .tolerance = run->p.effort.polish_tolerance,
+                                  .tangent_count = tangent_count};
+    for (size_t k = 0; k < tangent_count; k++)
+        options.tangent[k] = run->rows.rows[k];
+    return dem_pack_polish(&run->p, &run->lines, &run->state, options, &run->volumes, error);
+}
+
+// removes balls without exposed surface
+static dem_status drop_hidden(dem_pack_stages *run, size_t *dropped, dem_error *error)
+{
+    dem_pack_state *state = &run->state;
+    size_t before = state->count;
+    bool *gone = dem_alloc_zero(before, sizeof *gone);
+    if (!gone)
+        return dem_fail_memory(error);
+    dem_status status = dem_moment_rows_set(&run->p, state, 1, &run->rows, error);
+    for (size_t i = 0; i < before && status == DEM_OK; i++) {
+        double r = state->balls[i].radius;
+        gone[i] = run->rows.rows[0][i][3] <= least_exposed * 4 * DEM_PI * r * r;
+    }
+    if (status == DEM_OK)
+        dem_pack_state_remove(state, gone);
+    *dropped = before - state->count;
+    free(gone);
+    return status;
+}
+
+dem_status dem_pack_fit(dem_pack_stages *run, dem_error *error)
+{
+    enum { RESPENDINGS = 2 };
+    dem_packing *p = &run->p;
+    p->charge.linear = true;
+    DEM_TRY(dem_pack_relax(p, &run->state, settle_linear, error));
+    DEM_TRY(dem_pack_join(p, &run->state, error));
+    DEM_TRY(polish(run, 0, error));
+    for (int k = 0; k < RESPENDINGS; k++) {
+        size_t dropped, wanted = run->state.count;
+        DEM_TRY(drop_hidden(run, &dropped, error));
+        if (!dropped)
+            break;
+        DEM_TRY(dem_pack_resize(run, wanted, error));
+        DEM_TRY(polish(run, 0, error));
+    }
+    return dem_pack_report(p, fitted, error);
+}
+
+static void take_balls(const dem_pack_state *from, dem_pack_state *to)
+{
+    to->count = from->count;
+    memcpy(to->balls, from->balls, from->count * sizeof *to->balls);
+    memcpy(to->clearances, from->clearances, from->count * sizeof *to->clearances);
+}
+
+// projects on the first `kept` moments and descends along them, or more, in turn
+static dem_status project(dem_pack_stages *run, size_t kept, size_t tangent, bool *met, dem_error *error)
+{
+    dem_packing *p = &run->p;
+    for (int k = 0; k < PROJECTIONS; k++) {
+        DEM_TRY(dem_pack_project(p, &run->state, kept, &run->rows, &run->spare_rows, met, error));
+        DEM_TRY(dem_pack_measure(run, error));
+        if (!*met || k + 1 == PROJECTIONS)
+            break;
+        DEM_TRY(dem_moment_rows_set(p, &run->state, tangent, &run->rows, error));
+        DEM_TRY(polish(run, tangent, error));
+    }
+    return DEM_OK;
+}
+
+// Meets all moments; or volume and centre, from as near as the others could be met; or volume and centre alone. What
+// costs too much is taken back.
+static dem_status meet_moments(dem_pack_stages *run, dem_error *error)
+{
+    static const struct {
+        size_t kept, tangent;
+        bool nearest;      // go on from where the last attempt ended
+        dem_moments_kept met;
+    } ways[] = {{10, 10, false, DEM_MOMENTS_EXACT}, {4, 10, true, DEM_MOMENTS_VOLUME}, {4, 4, false, DEM_MOMENTS_VOLUME}};
+    dem_pack_state *free_state = &run->p.moved;
+    dem_line_volumes free_volumes = run->volumes;
+    take_balls(&run->state, free_state);
+    for (size_t k = run->p.options->moments == DEM_MOMENTS_EXACT ? 0 : 2; k < sizeof ways / sizeof *ways; k++) {
+        bool met;
+        if (!ways[k].nearest)
+            take_balls(free_state, &run->state);
+        DEM_TRY(project(run, ways[k].kept, ways[k].tangent, &met, error));
+        if (met && run->volumes.gap <= free_volumes.gap * (1 + dearest_share) + dearest_part) {
+            run->met = ways[k].met;
+            return DEM_OK;
+        }
+    }
+    take_balls(free_state, &run->state);
+    run->volumes = free_volumes;
+    return DEM_OK;
+}
+
+dem_status dem_pack_keep_moments(dem_pack_stages *run, dem_error *error)
+{
+    if (run->p.options->moments != DEM_MOMENTS_FREE)
+        DEM_TRY(meet_moments(run, error));
+    return dem_pack_report(&run->p, kept_moments, error);
+}
+
+static size_t moments_of(dem_moments_kept kept)
+{
+    return kept == DEM_MOMENTS_EXACT ? DEM_MOMENT_COUNT : kept == DEM_MOMENTS_VOLUME ? 4 : 0;
+}
+
+// keeping the moments may have pulled pieces apart: closes and projects in turn; one piece has the last word
+static dem_status rejoin(dem_pack_stages *run, dem_error *error)
+{
+    size_t kept = moments_of(run->met);
+    for (int k = 0; k < REJOINS; k++) {
+        bool met;
+        if (!dem_pack_close(&run->p, &run->state) || !kept)
+            return DEM_OK;
+        DEM_TRY(dem_pack_project(&run->p, &run->state, kept, &run->rows, &run->spare_rows, &met, error));
+    }
+    dem_pack_close(&run->p, &run->state);
+    return DEM_OK;
+}
+
+dem_status dem_pack_settle(dem_pack_stages *run, dem_error *error)
+{
+    size_t dropped;
+    DEM_TRY(rejoin(run, error));
+    DEM_TRY(drop_hidden(run, &dropped, error));
+    DEM_TRY(dem_pack_measure(run, error));
+    while (run->met != DEM_MOMENTS_FREE) {
+        DEM_TRY(dem_moment_rows_set(&run->p, &run->state, moments_of(run->met), &run->rows, error));
+        if (run->rows.residual <= exact_residual)
+            return DEM_OK;
+        run->met--;
+    }
+    return dem_moment_rows_set(&run->p, &run->state, 1, &run->rows, error);
+}
