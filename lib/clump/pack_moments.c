@@ -187,6 +187,7 @@ static dem_status newton(dem_packing *p, dem_pack_state *state, size_t kept, dem
     DEM_TRY(dem_pack_metric(p, state, error));
     DEM_TRY(dem_moment_rows_set(p, state, kept, rows, error));
     for (int k = 0; k < MOST_STEPS && rows->residual >= met_residual && damping < most_damping; k++) {
+        DEM_TRY(dem_pack_go_on(p, error));
         memcpy(before, state->balls, state->count * sizeof *before);
         if (!step(p, state, rows, damping, &taken)) {
             damping = fmax(10 * damping, least_damping);

@@ -4,7 +4,8 @@
 
 #include "base/status.h"
 #include "clump/pack.h"
-#include "clump/pack_stages.h"
+#include "clump/pack_side.h"
+#include "clump/pack_target.h"
 
 static const double poor_gap = 0.4;    // a fit not worth the name
 
@@ -16,9 +17,13 @@ static void place_one(dem_pack_stages *run)
     run->met = DEM_MOMENTS_VOLUME;
 }
 
-static dem_status pack_count(dem_pack_stages *run, dem_error *error)
+static dem_status run_stages(dem_pack_stages *run, dem_error *error)
 {
-    if (run->p.options->spheres == 1 && run->p.options->moments != DEM_MOMENTS_FREE) {
+    if (run->p.options->side != DEM_SIDE_BOTH) {
+        dem_pack_side_begin(&run->p);
+        DEM_TRY(dem_pack_place(run, error));
+        DEM_TRY(dem_pack_side_keep(run, error));
+    } else if (run->p.options->spheres == 1 && run->p.options->moments != DEM_MOMENTS_FREE) {
         place_one(run);
     } else {
         DEM_TRY(dem_pack_place(run, error));
@@ -58,19 +63,28 @@ static dem_status hand_over(const dem_pack_stages *run, dem_pack *pack, dem_erro
     return DEM_OK;
 }
 
+static dem_status pack_count(const dem_ctx *ctx, const dem_pack_grain *grain, const dem_pack_options *options,
+                             dem_pack *pack, dem_error *error)
+{
+    dem_pack_stages run;
+    DEM_TRY(dem_pack_stages_open(ctx, grain, options, NULL, &run, error));
+    dem_status status = run_stages(&run, error);
+    if (status == DEM_OK)
+        status = hand_over(&run, pack, error);
+    dem_pack_stages_close(&run);
+    return status;
+}
+
 static dem_status run_optimal(const dem_ctx *ctx, const dem_mesh *mesh, const dem_pack_options *options,
                               dem_pack *pack, dem_error *error)
 {
     dem_pack_grain grain;
-    dem_pack_stages run;
+    dem_pack_options settled = *options;
+    if (options->side != DEM_SIDE_BOTH)
+        settled.moments = DEM_MOMENTS_FREE;
     DEM_TRY(dem_pack_grain_open(mesh, &grain, error));
-    dem_status status = dem_pack_stages_open(ctx, &grain, options, NULL, &run, error);
-    if (status == DEM_OK) {
-        status = pack_count(&run, error);
-        if (status == DEM_OK)
-            status = hand_over(&run, pack, error);
-        dem_pack_stages_close(&run);
-    }
+    dem_status status = options->gap > 0 ? dem_pack_target(ctx, &grain, &settled, pack_count, pack, error)
+                                         : pack_count(ctx, &grain, &settled, pack, error);
     dem_pack_grain_close(&grain);
     return status;
 }

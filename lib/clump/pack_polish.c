@@ -99,7 +99,9 @@ static double evaluate(descent *d, const double *x, double *g)
         state->balls[i] = (dem_ball){v3(v[0], v[1], v[2]), fmax(v[3], dem_pack_smallest_radius)};
     }
     dem_ball_columns_set(&d->p->columns, state->balls, state->count);
-    d->status = dem_lines_measure(d->lines, &d->p->columns, d->slope, &d->volumes, d->error);
+    d->status = dem_pack_go_on(d->p, d->error);
+    if (d->status == DEM_OK)
+        d->status = dem_lines_measure(d->lines, &d->p->columns, d->slope, &d->volumes, d->error);
     if (d->status != DEM_OK)
         return INFINITY;
     double value = d->volumes.difference;
@@ -231,6 +233,9 @@ static void descend(descent *d, dem_polish_options options)
                 break;
             mark = d->value;
         }
+        d->status = dem_pack_progress(d->p, (double)it / options.iterations, d->error);
+        if (d->status != DEM_OK)
+            break;
         double promise = set_direction(d), next;
         if (!(promise > 0) || !search(d, promise, &next)) {
             // the flux is not quite the derivative of the discrete sum: near the optimum searches fail

@@ -64,8 +64,9 @@ dem_status dem_pack_prune(dem_packing *p, dem_pack_state *state, size_t count, d
 
 dem_status dem_pack_prune_to(dem_packing *p, dem_pack_state *state, size_t count, dem_error *error)
 {
-    double share = p->effort.prune_share;
+    double share = p->effort.prune_share, first = (double)state->count;
     while (state->count > count) {
+        DEM_TRY(dem_pack_progress(p, log(first / (double)state->count) / log(first / (double)count), error));
         size_t step = (size_t)((double)state->count * share);
         step = step < 1 ? 1 : step > state->count - count ? state->count - count : step;
         if (p->connected && (double)state->count <= join_early * (double)count && !p->spring)

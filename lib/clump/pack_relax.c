@@ -168,6 +168,7 @@ dem_status dem_pack_relax(dem_packing *p, dem_pack_state *state, dem_relax_optio
     double energy = state->energy + dem_pack_springs(p, state, NULL);
     bool assembled = false;
     for (int i = 0; i < options.iterations; i++) {
+        DEM_TRY(dem_pack_go_on(p, error));
         if (!assembled) {
             DEM_TRY(assemble(p, state, error));
             dem_pack_springs(p, state, p->equations);

@@ -58,13 +58,6 @@ void dem_pack_stages_close(dem_pack_stages *run)
     dem_packing_close(&run->p);
 }
 
-dem_status dem_pack_report(const dem_packing *p, double fraction, dem_error *error)
-{
-    if (dem_progress(p->ctx, "packing", fraction))
-        return dem_fail(error, DEM_INTERRUPTED, "packing was interrupted");
-    return DEM_OK;
-}
-
 // the ball to fall back on where nothing was found worth its place
 static dem_ball plain_ball(const dem_packing *p)
 {
@@ -102,7 +95,8 @@ dem_status dem_pack_place(dem_pack_stages *run, dem_error *error)
     dem_packing *p = &run->p;
     dem_pack_state *state = &run->state;
     size_t wanted = p->options->spheres;
-    DEM_TRY(dem_pack_report(p, 0, error));
+    dem_pack_stage(p, placed);
+    DEM_TRY(dem_pack_go_on(p, error));
     DEM_TRY(dem_candidates_greedy(&p->candidates, &p->lattice, p->kernels, p->inflations, p->inflation_count,
                                   START_FACTOR * wanted, p->threads, state->balls, &state->count, error));
     for (size_t i = 0; i < state->count; i++)
@@ -111,11 +105,11 @@ dem_status dem_pack_place(dem_pack_stages *run, dem_error *error)
         dem_pack_state_add(state, plain_ball(p));
     DEM_TRY(dem_pack_relax(p, state, (dem_relax_options){15, 0.02, 2e-5}, error));
     DEM_TRY(dem_pack_resize(run, wanted, error));
-    DEM_TRY(dem_pack_report(p, placed, error));
+    dem_pack_stage(p, breathed);
     DEM_TRY(dem_pack_assign(p, state, error));
     for (int k = 0; k < p->effort.breaths; k++) {
+        DEM_TRY(dem_pack_progress(p, (double)k / p->effort.breaths, error));
         DEM_TRY(dem_pack_breathe(p, state, error));
-        DEM_TRY(dem_pack_report(p, placed + (breathed - placed) * k / p->effort.breaths, error));
     }
     return DEM_OK;
 }
@@ -160,6 +154,7 @@ dem_status dem_pack_fit(dem_pack_stages *run, dem_error *error)
     enum { RESPENDINGS = 2 };
     dem_packing *p = &run->p;
     p->charge.linear = true;
+    dem_pack_stage(p, fitted);
     DEM_TRY(dem_pack_relax(p, &run->state, settle_linear, error));
     DEM_TRY(dem_pack_join(p, &run->state, error));
     DEM_TRY(polish(run, 0, error));
@@ -171,7 +166,7 @@ dem_status dem_pack_fit(dem_pack_stages *run, dem_error *error)
         DEM_TRY(dem_pack_resize(run, wanted, error));
         DEM_TRY(polish(run, 0, error));
     }
-    return dem_pack_report(p, fitted, error);
+    return DEM_OK;
 }
 
 static void take_balls(const dem_pack_state *from, dem_pack_state *to)
@@ -225,9 +220,8 @@ static dem_status meet_moments(dem_pack_stages *run, dem_error *error)
 
 dem_status dem_pack_keep_moments(dem_pack_stages *run, dem_error *error)
 {
-    if (run->p.options->moments != DEM_MOMENTS_FREE)
-        DEM_TRY(meet_moments(run, error));
-    return dem_pack_report(&run->p, kept_moments, error);
+    dem_pack_stage(&run->p, kept_moments);
+    return run->p.options->moments == DEM_MOMENTS_FREE ? DEM_OK : meet_moments(run, error);
 }
 
 static size_t moments_of(dem_moments_kept kept)
@@ -252,9 +246,12 @@ static dem_status rejoin(dem_pack_stages *run, dem_error *error)
 dem_status dem_pack_settle(dem_pack_stages *run, dem_error *error)
 {
     size_t dropped;
+    dem_pack_stage(&run->p, 1);
     DEM_TRY(rejoin(run, error));
     DEM_TRY(drop_hidden(run, &dropped, error));
+    DEM_TRY(dem_pack_go_on(&run->p, error));
     DEM_TRY(dem_pack_measure(run, error));
+    DEM_TRY(dem_pack_go_on(&run->p, error));
     while (run->met != DEM_MOMENTS_FREE) {
         DEM_TRY(dem_moment_rows_set(&run->p, &run->state, moments_of(run->met), &run->rows, error));
         if (run->rows.residual <= exact_residual)

@@ -33,7 +33,5 @@ dem_status dem_pack_settle(dem_pack_stages *run, dem_error *error);
 dem_status dem_pack_measure(dem_pack_stages *run, dem_error *error);
 /// Changes the number of balls by inserting or pruning, and relaxes.
 dem_status dem_pack_resize(dem_pack_stages *run, size_t count, dem_error *error);
-/// Asks the caller whether to stop: DEM_INTERRUPTED.
-dem_status dem_pack_report(const dem_packing *p, double fraction, dem_error *error);
 
 #endif

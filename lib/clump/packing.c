@@ -6,6 +6,8 @@
 // Samples: at least 100 per sphere or the spheres fit the samples instead of the surface; twice as many spheres as
 // asked for are under way at first.
 enum { FEWEST_SAMPLES = 8192, MOST_SAMPLES = 65536, BASE_SAMPLES = 4096, SAMPLES_PER_SPHERE = 100 };
+enum { FEWEST_FOR_THREADS = 300 };  // with fewer spheres threads wait for each other longer than they work
+enum { OUTER_SAMPLES = 4 };     // times as many where none may stay uncovered, nor what lies between them
 enum { INTERIOR_SAMPLES = 4096 };
 enum { FEWEST_POINTS = 8000, POINTS_PER_SPHERE = 150 };    // of the lattice
 enum { FEWEST_CANDIDATES = 3000, CANDIDATES_PER_SPHERE = 3 };
@@ -101,6 +103,8 @@ dem_status dem_packing_open(const dem_ctx *ctx, const dem_pack_grain *grain, con
                        .random = random_stream(options->seed, 0), .connected = true, .effort = effort_for(options->effort, n), .stiffness = 0.5,
                        .charge = {.softening = (float)(softening * softening / 4), .inside = 1, .outside = 1}};
     size_t surface = at_least(FEWEST_SAMPLES, BASE_SAMPLES + SAMPLES_PER_SPHERE * n);
+    if (options->side == DEM_SIDE_OUTER)
+        surface *= OUTER_SAMPLES;
     if (surface > MOST_SAMPLES)
         surface = MOST_SAMPLES;
     p->capacity = 2 * n + 64;
@@ -110,6 +114,8 @@ dem_status dem_packing_open(const dem_ctx *ctx, const dem_pack_grain *grain, con
     if (status == DEM_OK)
         status = dem_candidates_build(grain, &p->samples, at_least(FEWEST_CANDIDATES, CANDIDATES_PER_SPHERE * n),
                                       p->threads, &p->candidates, error);
+    if (n < FEWEST_FOR_THREADS)
+        p->threads = 1;
     if (status == DEM_OK) {
         split_chunks(p);
         set_inflations(p);

@@ -99,11 +99,20 @@ typedef struct dem_packing {
     uint32_t *order;             ///< [capacity]
     dem_pack_state trial;        ///< of `dem_pack_relax`
     dem_pack_state moved;        ///< of `dem_pack_breathe`
+    double stage_begin, stage_end, done;  ///< parts of the whole work: of the stage at hand, and what is done
 } dem_packing;
 
 dem_status dem_packing_open(const dem_ctx *ctx, const dem_pack_grain *grain, const dem_pack_options *options,
                             const dem_pack_kernels *kernels, dem_packing *p, dem_error *error);
 void dem_packing_close(dem_packing *p);
+
+// progress: pack_progress.c
+/// Begins a stage at whose end this part of the whole work is done.
+void dem_pack_stage(dem_packing *p, double until);
+/// `part` of the stage is done. DEM_INTERRUPTED: the caller wants to stop.
+dem_status dem_pack_progress(dem_packing *p, double part, dem_error *error);
+/// The same without anything new to tell.
+dem_status dem_pack_go_on(const dem_packing *p, dem_error *error);
 
 // states: pack_state.c
 dem_status dem_pack_state_init(dem_packing *p, dem_pack_state *state, dem_error *error);
