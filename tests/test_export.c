@@ -84,7 +84,7 @@ static void xyzr_gives_the_spheres_back_without_loss(void **state)
     (void)state;
     dem_clump_def def = sample_clump();
     def.name = "two\nlines";
-    dem_buffer out = written("xyzr", &def, (dem_export_options){.unit = 1e-3, .unit_name = "mm"});
+    dem_buffer out = written("xyzr", &def, (dem_export_options){0});
     dem_ball balls[SAMPLE_BALLS];
     check(read_xyzr(&out, balls, SAMPLE_BALLS) == SAMPLE_BALLS);
     for (int i = 0; i < SAMPLE_BALLS; i++)
@@ -92,7 +92,7 @@ static void xyzr_gives_the_spheres_back_without_loss(void **state)
               balls[i].centre.z == def.balls[i].centre.z && balls[i].radius == def.balls[i].radius);
     check(strstr(out.data, "# two lines: 3 spheres") == out.data);
     check(strstr(out.data, "\n# unit of x y z r: m\n") && strstr(out.data, "\n# density [kg/m^3]: 2650\n"));
-    check(strstr(out.data, "\n# centre of mass: 0 0 0\n"));
+    check(strstr(out.data, "\n# centre of mass [m]: 0 0 0\n"));
     dem_buffer_release(&out);
 }
 
@@ -100,7 +100,7 @@ static void the_mesh_frame_is_that_of_the_file(void **state)
 {
     (void)state;
     dem_clump_def def = sample_clump();
-    dem_export_options options = {.frame = DEM_FRAME_MESH, .unit = 1e-3, .unit_name = "mm"};
+    dem_export_options options = {.frame = DEM_FRAME_MESH};
     dem_buffer out = written("xyzr", &def, options);
     dem_ball balls[SAMPLE_BALLS];
     check(read_xyzr(&out, balls, SAMPLE_BALLS) == SAMPLE_BALLS);
@@ -108,10 +108,10 @@ static void the_mesh_frame_is_that_of_the_file(void **state)
         // the quaternion (.6, 0, .8, 0) turns about y by an angle of cosine .36 - .64 and sine .96
         dem_vec3 c = def.balls[i].centre;
         dem_vec3 want = v3(1e6 + (-0.28 * c.x + 0.96 * c.z), -2 + c.y, 3 + (-0.96 * c.x - 0.28 * c.z));
-        check_vec(balls[i].centre, v3_scale(want, 1000), 1e-6);  // ulp of 1e9
-        check_close(balls[i].radius, 1000 * def.balls[i].radius, 1e-15);
+        check_vec(balls[i].centre, want, 1e-9);  // ulp of 1e6
+        check_near(balls[i].radius, def.balls[i].radius, 0);
     }
-    check(strstr(out.data, "\n# unit of x y z r: mm\n"));
+    check(strstr(out.data, "\n# unit of x y z r: m\n"));
     dem_buffer_release(&out);
 }
 

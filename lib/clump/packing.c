@@ -10,6 +10,9 @@ enum { FEWEST_FOR_THREADS = 300 };  // with fewer spheres threads wait for each 
 enum { OUTER_SAMPLES = 4 };     // times as many where none may stay uncovered, nor what lies between them
 enum { INTERIOR_SAMPLES = 4096 };
 enum { FEWEST_POINTS = 8000, POINTS_PER_SPHERE = 150 };    // of the lattice
+// below so many balls a pass takes well under a millisecond and waiting for a second thread costs more than it
+// gains, on a busy machine a hundred times more
+enum { THREADED_SPHERES = 300 };
 enum { FEWEST_CANDIDATES = 3000, CANDIDATES_PER_SPHERE = 3 };
 
 static const double softening = 0.0015;  // below this depth a sample's charge turns from |f|^p to f^2 [d_eq]
@@ -117,6 +120,8 @@ dem_status dem_packing_open(const dem_ctx *ctx, const dem_pack_grain *grain, con
     if (n < FEWEST_FOR_THREADS)
         p->threads = 1;
     if (status == DEM_OK) {
+        if (n < THREADED_SPHERES)
+            p->threads = 1;
         split_chunks(p);
         set_inflations(p);
         status = take_work_space(p, error);

@@ -10,14 +10,12 @@
 
 typedef enum dem_frame {
     DEM_FRAME_PRINCIPAL,  ///< the clump's own, in metres
-    DEM_FRAME_MESH,       ///< that of the mesh it was made from
+    DEM_FRAME_MESH,       ///< that of the mesh it was made from, in metres
 } dem_frame;
 
 /// Zero-initialised: principal frame, no mesh, all cores.
 typedef struct dem_export_options {
     dem_frame frame;        ///< for the formats that have only spheres: xyzr, stl, vtp
-    double unit;            ///< length that is written as 1 in the frame of the mesh [m]; 0: 1
-    const char *unit_name;  ///< of it, for comments; NULL: m
     const dem_mesh *mesh;   ///< in its own frame [m]; NULL: the surface kept in the clump serves instead
     int threads;
 } dem_export_options;
@@ -41,22 +39,15 @@ const dem_exporter *dem_exporter_of_file(const char *path);
 dem_status dem_export(const dem_exporter *exporter, const dem_clump *clump, const dem_export_options *options,
                       const char *path, dem_error *error);
 
-/// A clump's ball in the asked frame and unit.
+/// A clump's ball in the asked frame [m].
 static inline dem_ball export_ball(const dem_export_options *options, const dem_clump_def *clump, dem_ball ball)
 {
-    if (options->frame == DEM_FRAME_PRINCIPAL)
-        return ball;
-    double scale = 1 / (options->unit > 0 ? options->unit : 1);
-    dem_vec3 x = v3_add(clump->position, quat_rotate(clump->orientation, ball.centre));
-    return (dem_ball){v3_scale(x, scale), ball.radius * scale};
+    if (options->frame == DEM_FRAME_MESH)
+        ball.centre = v3_add(clump->position, quat_rotate(clump->orientation, ball.centre));
+    return ball;
 }
 
-static inline const char *export_unit(const dem_export_options *options)
-{
-    return options->frame == DEM_FRAME_MESH && options->unit_name ? options->unit_name : "m";
-}
-
-/// All balls in the asked frame and unit, to be freed; NULL: out of memory.
+/// All balls in the asked frame [m], to be freed; NULL: out of memory.
 dem_ball *dem_export_balls(const dem_export_options *options, const dem_clump_def *clump);
 
 #endif

@@ -26,12 +26,12 @@ static void put_head(dem_buffer *out, const dem_clump_def *clump, const dem_expo
     dem_quat q = clump->orientation;
     put_title(out, clump);
     dem_buffer_print(out, "# frame: %s\n",
-                     mesh_frame ? "mesh, that of the file it was made from"
+                     mesh_frame ? "mesh, that of the file it was made from, in metres"
                                 : "principal, centre of mass at 0, axes I1 <= I2 <= I3");
-    dem_buffer_print(out, "# unit of x y z r: %s\n", export_unit(options));
+    dem_buffer_text(out, "# unit of x y z r: m\n");
     put_comment(out, "density [kg/m^3]:", &clump->density, 1);
     put_comment(out, "mass [kg]:", &clump->mass, 1);
-    put_comment(out, "centre of mass:", (double[]){centre.x, centre.y, centre.z}, 3);
+    put_comment(out, "centre of mass [m]:", (double[]){centre.x, centre.y, centre.z}, 3);
     put_comment(out, "principal moments of inertia [kg m^2]:", clump->inertia, 3);
     put_comment(out, "principal to mesh frame, position [m]:", (double[]){p.x, p.y, p.z}, 3);
     put_comment(out, "principal to mesh frame, quaternion w x y z:", (double[]){q.w, q.x, q.y, q.z}, 4);

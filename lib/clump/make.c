@@ -1,0 +1,138 @@
+#include "dem/clump.h"
+
+#include <stdlib.h>
+
+#include "base/memory.h"
+#include "base/text.h"
+#include "math/quat.h"
+#include "mesh/decimate.h"
+
+static const double density_quartz = 2650;  // [kg/m^3]
+enum { SURFACE_TRIANGLES = 2000 };          // a picture of some thousand clumps, and 100 kB of file
+
+dem_make_options dem_make_defaults(void)
+{
+    return (dem_make_options){.pack = dem_pack_defaults(),
+                              .density = density_quartz,
+                              .mass_from = DEM_MASS_FROM_MESH,
+                              .surface_triangles = SURFACE_TRIANGLES};
+}
+
+// what is freed when the clump is made or has failed
+typedef struct make_work {
+    dem_pack pack;
+    dem_ball *balls;      // in the clump frame
+    dem_mesh surface;
+    dem_buffer parameters;
+} make_work;
+
+static void to_clump_frame(dem_vec3 *point, dem_vec3 position, dem_quat orientation)
+{
+    *point = quat_unrotate(orientation, v3_sub(*point, position));
+}
+
+static dem_status make_surface(const dem_mesh *mesh, size_t triangles, const dem_clump_def *def, dem_mesh *surface,
+                               dem_error *error)
+{
+    if (triangles == 0)
+        return DEM_OK;
+    dem_status status = mesh->triangle_count <= triangles ? dem_mesh_copy(mesh, surface, error)
+                                                          : dem_mesh_decimate(mesh, triangles, surface, error);
+    if (status == DEM_UNAVAILABLE)
+        return DEM_OK;  // the surface is optional
+    DEM_TRY(status);
+    for (size_t i = 0; i < surface->vertex_count; i++)
+        to_clump_frame(&surface->vertices[i], def->position, def->orientation);
+    return DEM_OK;
+}
+
+static void write_parameters(dem_buffer *out, const dem_pack_options *asked, const dem_pack *pack)
+{
+    static const char *const efforts[] = {"fast", "default", "best"};
+    static const char *const moments[] = {"free", "volume", "exact"};
+    static const char *const sides[] = {"both", "inscribed", "outer"};
+    if (asked->gap > 0) {
+        dem_buffer_text(out, "{\"gap\":");
+        dem_buffer_number(out, asked->gap, 17);
+        dem_buffer_print(out, ",\"max_spheres\":%zu", asked->max_spheres);
+    } else {
+        dem_buffer_print(out, "{\"spheres\":%zu", asked->spheres);
+    }
+    dem_buffer_print(out, ",\"effort\":\"%s\",\"moments\":\"%s\",\"moments_met\":\"%s\",\"side\":\"%s\"}",
+                     efforts[asked->effort], moments[asked->moments], moments[pack->moments], sides[asked->side]);
+}
+
+// mass, centre, frame and inertia from the solid that was asked for; the union's own beside them
+static void set_mass(dem_clump_def *def, const dem_solid *mesh, const dem_union *balls, const dem_make_options *options)
+{
+    const dem_solid *solid = options->mass_from == DEM_MASS_FROM_UNION ? &balls->solid : mesh;
+    def->density = options->density;
+    def->mass_from = options->mass_from;
+    def->volume = solid->volume;
+    def->mass = options->density * solid->volume;
+    def->position = solid->centre;
+    def->orientation = solid->axes;
+    def->union_volume = balls->solid.volume;
+    def->union_centre = balls->solid.centre;
+    to_clump_frame(&def->union_centre, def->position, def->orientation);
+    for (int i = 0; i < 3; i++) {
+        def->inertia[i] = options->density * solid->principal[i];
+        def->union_inertia[i] = options->density * balls->solid.principal[i];
+    }
+}
+
+static dem_status make(const dem_ctx *ctx, const dem_mesh *mesh, const dem_make_options *options, make_work *work,
+                       dem_clump **clump, dem_error *error)
+{
+    dem_clump_def def = {.name = options->name,
+                         .source_mesh = options->source_mesh,
+                         .source_sha256 = options->source_sha256,
+                         .source_unit = options->source_unit,
+                         .method = options->pack.method,
+                         .seed = options->pack.seed,
+                         .version = DEM_VERSION};
+    dem_union balls;
+    DEM_TRY(dem_clump_pack(ctx, mesh, &options->pack, &work->pack, error));
+    DEM_TRY(dem_balls_union(work->pack.balls, work->pack.count, &balls, error));
+    dem_solid solid = dem_mesh_solid(mesh);
+    set_mass(&def, &solid, &balls, options);
+    DEM_TRY(dem_fidelity_measure(ctx, mesh, work->pack.balls, work->pack.count, 0, &def.fidelity, error));
+    DEM_TRY(dem_shape_measure(ctx, mesh, &def.shape, error));
+    DEM_TRY(make_surface(mesh, options->surface_triangles, &def, &work->surface, error));
+
+    work->balls = dem_alloc(work->pack.count, sizeof *work->balls);
+    if (!work->balls)
+        return dem_fail_memory(error);
+    for (size_t i = 0; i < work->pack.count; i++) {
+        work->balls[i] = work->pack.balls[i];
+        to_clump_frame(&work->balls[i].centre, def.position, def.orientation);
+    }
+    write_parameters(&work->parameters, &options->pack, &work->pack);
+    if (work->parameters.failed)
+        return dem_fail_memory(error);
+    def.balls = work->balls;
+    def.ball_count = work->pack.count;
+    def.surface = work->surface;
+    def.parameters = work->parameters.data;
+    def.seconds = work->pack.seconds;
+    return dem_clump_create(&def, clump, error);
+}
+
+dem_status dem_clump_make(const dem_ctx *ctx, const dem_mesh *mesh, const dem_make_options *options,
+                          dem_clump **clump, dem_pack *pack, dem_error *error)
+{
+    make_work work = {0};
+    *clump = NULL;
+    if (!(options->density > 0) || !isfinite(options->density))
+        return dem_fail(error, DEM_USAGE, "the density is %g kg/m3; give a positive one", options->density);
+    dem_status status = make(ctx, mesh, options, &work, clump, error);
+    if (pack) {
+        *pack = work.pack;
+        work.pack = (dem_pack){0};
+    }
+    dem_pack_free(&work.pack);
+    dem_mesh_free(&work.surface);
+    dem_buffer_release(&work.parameters);
+    free(work.balls);
+    return status;
+}

@@ -1,0 +1,253 @@
+#define _GNU_SOURCE
+#include "clump_job.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <time.h>
+
+#include "base/file.h"
+#include "base/hash.h"
+#include "base/memory.h"
+#include "out/export.h"
+
+// the caller's log and progress, with the warnings kept for the report; a warning belongs to the result that is
+// being made, and those of reading and repairing to every body of the file
+typedef struct job {
+    const dem_ctx *caller;
+    const char *input;
+    const job_options *options;
+    job_results *results;
+    dem_ctx ctx;
+    char **warnings;
+    size_t warning_count, warning_capacity;
+    char sha256[65];
+    dem_mesh_report report;
+    double started, seconds_read, seconds_repair;
+} job;
+
+static double now(void)
+{
+    struct timespec t;
+    clock_gettime(CLOCK_MONOTONIC, &t);
+    return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
+}
+
+static void keep_text(char ***texts, size_t *count, size_t *capacity, const char *text)
+{
+    char *copy = strdup(text);
+    if (copy && dem_grow(texts, capacity, *count, sizeof **texts))
+        (*texts)[(*count)++] = copy;
+    else
+        free(copy);
+}
+
+static void job_log(void *user, dem_log_level level, const char *subject, const char *text)
+{
+    job *j = user;
+    if (level == DEM_LOG_WARNING)
+        keep_text(&j->warnings, &j->warning_count, &j->warning_capacity, text);
+    if (j->caller->log)
+        j->caller->log(j->caller->user, level, subject, text);
+}
+
+static bool job_progress(void *user, const char *what, double fraction)
+{
+    job *j = user;
+    return dem_progress(j->caller, what, fraction);
+}
+
+static job_result *add_result(job *j, const char *name)
+{
+    job_results *all = j->results;
+    if (!dem_grow(&all->items, &all->capacity, all->count, sizeof *all->items))
+        return NULL;
+    job_result *r = &all->items[all->count++];
+    *r = (job_result){.input = j->input, .report = j->report, .seconds_read = j->seconds_read,
+                      .seconds_repair = j->seconds_repair};
+    snprintf(r->name, sizeof r->name, "%s", name);
+    return r;
+}
+
+static dem_status read_and_repair(job *j, dem_mesh *mesh, dem_error *error)
+{
+    const job_options *o = j->options;
+    DEM_TRY(dem_mesh_import(&j->ctx, j->input, mesh, error));
+    if (strcmp(j->input, "-") != 0)
+        DEM_TRY(dem_sha256_file(j->input, j->sha256, error));
+    dem_mesh_scale(mesh, o->unit);
+    j->seconds_read = now() - j->started;
+    DEM_TRY(dem_mesh_repair(&j->ctx, mesh, &o->repair, &j->report, error));
+    j->seconds_repair = now() - j->started - j->seconds_read;
+    return DEM_OK;
+}
+
+// the file a format goes to: `base` with the format's suffix
+static char *output_path(const char *folder, const char *base, const char *suffix)
+{
+    char *path = NULL;
+    if (asprintf(&path, "%s%s%s.%s", folder ? folder : "", folder && *folder ? "/" : "", base, suffix) < 0)
+        return NULL;
+    return path;
+}
+
+// `out.json` of body 2 of several: `out-2.json`
+static char *numbered(const char *path, size_t body, size_t bodies)
+{
+    if (bodies < 2 || strcmp(path, "-") == 0)
+        return strdup(path);
+    const char *name = dem_file_name(path), *dot = strrchr(name, '.');
+    int stem = (int)(dot ? dot - path : (long)strlen(path));
+    char *numbered_path = NULL;
+    if (asprintf(&numbered_path, "%.*s-%zu%s", stem, path, body + 1, dot ? dot : "") < 0)
+        return NULL;
+    return numbered_path;
+}
+
+static dem_status write_one(job *j, job_result *r, const dem_mesh *mesh, const dem_exporter *exporter, char *path,
+                            dem_error *error)
+{
+    if (!path)
+        return dem_fail_memory(error);
+    dem_export_options options = {.frame = j->options->frame, .mesh = mesh, .threads = j->ctx.threads};
+    dem_status status = dem_export(exporter, r->clump, &options, path, error);
+    size_t capacity = r->output_count;
+    if (status == DEM_OK)
+        keep_text(&r->outputs, &r->output_count, &capacity, path);
+    free(path);
+    return status;
+}
+
+static dem_status write_outputs(job *j, job_result *r, const dem_mesh *mesh, size_t body, size_t bodies,
+                                dem_error *error)
+{
+    const job_options *o = j->options;
+    if (dem_progress(&j->ctx, "writing", 1))
+        return dem_fail(error, DEM_INTERRUPTED, "interrupted; nothing was written");
+    if (o->folder || o->outputs.count == 0) {
+        size_t count = o->formats.count ? o->formats.count : 1;
+        for (size_t i = 0; i < count; i++) {
+            const dem_exporter *exporter = dem_exporter_find(o->formats.count ? o->formats.items[i] : "json");
+            DEM_TRY(write_one(j, r, mesh, exporter, output_path(o->folder, r->name, exporter->suffix), error));
+        }
+        return DEM_OK;
+    }
+    for (size_t i = 0; i < o->outputs.count; i++) {
+        const char *path = o->outputs.items[i];
+        const dem_exporter *exporter = dem_exporter_of_file(path);
+        if (i < o->formats.count)
+            exporter = dem_exporter_find(o->formats.items[i]);
+        DEM_TRY(write_one(j, r, mesh, exporter, numbered(path, body, bodies), error));
+    }
+    return DEM_OK;
+}
+
+static dem_status finish_body(job *j, job_result *r, dem_mesh *mesh, size_t body, size_t bodies, dem_error *error)
+{
+    const job_options *o = j->options;
+    r->solid = dem_mesh_solid(mesh);
+    if (o->size > 0) {
+        dem_mesh_scale(mesh, o->size / cbrt(6 * r->solid.volume / 3.14159265358979323846));
+        r->solid = dem_mesh_solid(mesh);
+    }
+    dem_make_options make = o->make;
+    make.name = r->name;
+    make.source_mesh = strcmp(j->input, "-") ? dem_file_name(j->input) : "standard input";
+    make.source_sha256 = j->sha256;
+    make.source_unit = o->unit_name;
+    DEM_TRY(dem_clump_make(&j->ctx, mesh, &make, &r->clump, &r->pack, error));
+    free(r->pack.balls);
+    r->pack.balls = NULL;
+    return write_outputs(j, r, mesh, body, bodies, error);
+}
+
+static void run_body(job *j, dem_mesh *mesh, const char *name, size_t body, size_t bodies)
+{
+    char body_name[256];
+    snprintf(body_name, sizeof body_name, bodies > 1 ? "%.240s-%zu" : "%.240s", name, body + 1);
+    job_result *r = add_result(j, body_name);
+    if (!r)
+        return;
+    size_t common = j->warning_count;
+    r->status = finish_body(j, r, mesh, body, bodies, &r->error);
+    if (r->status != DEM_OK && !r->error.file[0])
+        snprintf(r->error.file, sizeof r->error.file, "%s", j->ctx.subject);
+    r->seconds_total = now() - j->started;
+    size_t capacity = 0;
+    for (size_t i = 0; i < j->warning_count; i++)
+        keep_text(&r->warnings, &r->warning_count, &capacity, j->warnings[i]);
+    while (j->warning_count > common)
+        free(j->warnings[--j->warning_count]);
+}
+
+static void run_bodies(job *j, dem_mesh *mesh, const char *name)
+{
+    if (!j->options->split) {
+        run_body(j, mesh, name, 0, 1);
+        return;
+    }
+    dem_mesh *bodies;
+    size_t count;
+    dem_error error;
+    dem_status status = dem_mesh_split(mesh, &bodies, &count, &error);
+    if (status != DEM_OK) {
+        job_result *r = add_result(j, name);
+        if (r) {
+            r->status = status;
+            r->error = error;
+        }
+        return;
+    }
+    for (size_t i = 0; i < count; i++) {
+        run_body(j, &bodies[i], name, i, count);
+        dem_mesh_free(&bodies[i]);
+    }
+    free(bodies);
+}
+
+void job_run(const dem_ctx *ctx, const char *input, const char *name, const job_options *options,
+             job_results *results)
+{
+    job j = {.caller = ctx, .input = input, .options = options, .results = results, .started = now()};
+    j.ctx = (dem_ctx){.log = job_log, .progress = job_progress, .user = &j,
+                      .subject = strcmp(input, "-") ? input : "standard input", .threads = ctx->threads};
+    dem_mesh mesh = {0};
+    dem_error error = {0};
+    dem_status status = read_and_repair(&j, &mesh, &error);
+    if (status == DEM_OK)
+        run_bodies(&j, &mesh, name);
+    else {
+        job_result *r = add_result(&j, name);
+        if (r) {
+            r->status = status;
+            r->error = error;
+            if (!error.file[0])
+                snprintf(r->error.file, sizeof r->error.file, "%s", j.ctx.subject);
+            r->seconds_total = now() - j.started;
+            r->warnings = j.warnings;
+            r->warning_count = j.warning_count;
+            j.warnings = NULL;
+            j.warning_count = 0;
+        }
+    }
+    dem_mesh_free(&mesh);
+    while (j.warning_count)
+        free(j.warnings[--j.warning_count]);
+    free(j.warnings);
+}
+
+void job_results_release(job_results *results)
+{
+    for (size_t i = 0; i < results->count; i++) {
+        job_result *r = &results->items[i];
+        dem_clump_destroy(r->clump);
+        for (size_t k = 0; k < r->warning_count; k++)
+            free(r->warnings[k]);
+        for (size_t k = 0; k < r->output_count; k++)
+            free(r->outputs[k]);
+        free(r->warnings);
+        free(r->outputs);
+    }
+    free(results->items);
+    *results = (job_results){0};
+}

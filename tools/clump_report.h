@@ -1,0 +1,17 @@
+/// What dem-clump tells about its grains: a screen of text, one JSON object, a CSV table.
+#ifndef DEM_TOOLS_CLUMP_REPORT_H
+#define DEM_TOOLS_CLUMP_REPORT_H
+
+#include "base/text.h"
+#include "clump_job.h"
+
+/// One screen, aligned, with units.
+void report_text(dem_buffer *out, const job_result *result, const job_options *options);
+
+/// One JSON object: of the grain alone, or {"grains": [...], "failed": n} for several.
+void report_json(dem_buffer *out, const job_results *results, bool several);
+
+/// A header line and one row per grain; SI units stand in the header.
+void report_csv(dem_buffer *out, const job_results *results);
+
+#endif

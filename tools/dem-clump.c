@@ -1,0 +1,324 @@
+/// dem-clump: turns meshes of grains into clumps of spheres and measures them.
+#define _GNU_SOURCE
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
+
+#include "base/file.h"
+#include "base/memory.h"
+#include "base/units.h"
+#include "cli.h"
+#include "clump/pack.h"
+#include "clump_job.h"
+#include "clump_report.h"
+#include "out/export.h"
+
+// what the option table fills
+typedef struct arguments {
+    cli_common common;
+    long spheres, max_spheres;
+    double gap, size, density, wrap_detail;
+    int effort, moments, mass_from, frame, repair, keep;
+    bool inscribed, outer, split, methods;
+    const char *method, *unit;
+    cli_texts outputs, formats;
+} arguments;
+
+static const char about[] =
+    "Packs spheres into closed triangle meshes of grains (STL, OBJ, PLY, OFF; glTF, 3MF and others through assimp), "
+    "repairs the mesh where needed, and gives each clump the grain's mass properties and its error. '-' reads "
+    "standard input. Several meshes are a batch.";
+
+static const char epilogue[] = "Examples:\n"
+                               "  dem-clump grain.stl                          50 spheres -> grain.json\n"
+                               "  dem-clump grain.stl --unit mm -n 100 -o grain.json -o grain.png\n"
+                               "  dem-clump grain.obj -e 3                     as many spheres as a 3 % gap needs\n"
+                               "  dem-clump grain.obj -o - --format xyzr       spheres on standard output\n"
+                               "  dem-clump scans/*.stl -o clumps/             a batch; the table on standard output\n"
+                               "Exit status: 0 done, 1 failed, 2 wrong usage, 3 bad input, 4 cannot write, 130 interrupted.";
+
+// the choices as the library counts them
+static const char effort_names[] = "fast|default|best", moments_names[] = "free|volume|exact";
+static const char repair_names[] = "auto|strict|wrap|none", keep_names[] = "one|largest|all";
+static const char frame_names[] = "principal|mesh", mass_names[] = "mesh|union";
+
+static arguments default_arguments(void)
+{
+    dem_make_options make = dem_make_defaults();
+    return (arguments){.common = CLI_COMMON_DEFAULTS,
+                       .spheres = (long)make.pack.spheres,
+                       .max_spheres = (long)make.pack.max_spheres,
+                       .density = make.density,
+                       .effort = make.pack.effort,
+                       .moments = make.pack.moments,
+                       .mass_from = make.mass_from,
+                       .method = make.pack.method};
+}
+
+// `--methods`: what the registry knows
+static int list_methods(const cli_tool *tool)
+{
+    dem_buffer text = {0};
+    size_t count;
+    const dem_packer *const *packers = dem_packers(&count);
+    for (size_t i = 0; i < count; i++) {
+        dem_buffer_print(&text, "%s: %s\n  %s\n", packers[i]->name, packers[i]->about, packers[i]->paper);
+        for (size_t k = 0; k < packers[i]->parameter_count; k++) {
+            const dem_packer_parameter *p = &packers[i]->parameters[k];
+            dem_buffer_print(&text, "  %-12s [%s] default %g, %g to %g: %s\n", p->name, p->unit, p->value, p->low,
+                             p->high, p->help);
+        }
+    }
+    return cli_print(tool, &text);
+}
+
+static job_options job_options_from(const arguments *a)
+{
+    job_options o = {.make = dem_make_defaults(), .split = a->split, .size = a->size, .unit = 1,
+                     .unit_name = a->unit ? a->unit : "m", .frame = (dem_frame)a->frame, .outputs = a->outputs,
+                     .formats = a->formats};
+    o.make.density = a->density;
+    o.make.mass_from = (dem_mass_source)a->mass_from;
+    o.make.pack.method = a->method;
+    o.make.pack.spheres = (size_t)a->spheres;
+    o.make.pack.max_spheres = (size_t)a->max_spheres;
+    o.make.pack.gap = a->gap;
+    o.make.pack.effort = (dem_effort)a->effort;
+    o.make.pack.moments = (dem_moments_kept)a->moments;
+    o.make.pack.side = a->inscribed ? DEM_SIDE_INSCRIBED : a->outer ? DEM_SIDE_OUTER : DEM_SIDE_BOTH;
+    o.make.pack.seed = (uint64_t)a->common.seed;
+    o.repair = (dem_repair_options){.repair = (dem_repair)a->repair, .keep = (dem_keep)a->keep,
+                                    .wrap_detail = a->wrap_detail};
+    if (a->split)
+        o.repair.keep = DEM_KEEP_ALL;
+    return o;
+}
+
+static bool is_folder(const char *path)
+{
+    struct stat about_path;
+    size_t length = strlen(path);
+    return (length && path[length - 1] == '/') || (stat(path, &about_path) == 0 && S_ISDIR(about_path.st_mode));
+}
+
+static const char *format_names(char text[256])
+{
+    *text = 0;
+    for (const dem_exporter *const *e = dem_exporters(); *e; e++)
+        snprintf(text + strlen(text), 256 - strlen(text), " %s", (*e)->name);
+    return text;
+}
+
+// -o: files of one grain, or a folder (and a table) of several; says what does not go together
+// (`files`, room for all of them)
+static int sort_outputs(const cli_tool *tool, job_options *o, bool several, cli_texts *files, const char **table)
+{
+    char known[256];
+    for (size_t i = 0; i < o->formats.count; i++)
+        if (!dem_exporter_find(o->formats.items[i]))
+            return cli_wrong_usage(tool, "unknown format '%s'; use one of:%s", o->formats.items[i],
+                                   format_names(known));
+    for (size_t i = 0; i < o->outputs.count; i++) {
+        const char *path = o->outputs.items[i];
+        if (strcmp(path, "-") != 0 && is_folder(path))
+            o->folder = path;
+        else if (dem_file_has_suffix(path, "csv"))
+            *table = path;
+        else if (several)
+            return cli_wrong_usage(tool, "several grains cannot all go to '%s'; name a folder with -o DIR/", path);
+        else {
+            if (files->count >= o->formats.count && !dem_exporter_of_file(path))
+                return cli_wrong_usage(tool, "the name '%s' does not tell the format; add --format, one of:%s", path,
+                                       format_names(known));
+            files->items[files->count++] = path;
+        }
+    }
+    if (o->folder && files->count)
+        return cli_wrong_usage(tool, "give -o either a folder or files, not both");
+    if (o->folder && mkdir(o->folder, 0777) != 0 && !is_folder(o->folder))
+        return cli_error(tool, &(dem_error){.code = DEM_CANNOT_WRITE, .text = "cannot make the folder for -o"});
+    o->outputs = *files;
+    return 0;
+}
+
+// output names of a batch: the input's name without folder and suffix, numbered where two are the same
+static char **grain_names(const cli_texts *inputs)
+{
+    char **names = calloc(inputs->count, sizeof *names);
+    for (size_t i = 0; names && i < inputs->count; i++) {
+        const char *file = strcmp(inputs->items[i], "-") ? dem_file_name(inputs->items[i]) : "grain";
+        const char *dot = strrchr(file, '.');
+        int stem = (int)(dot && dot != file ? dot - file : (long)strlen(file)), same = 1;
+        for (size_t k = 0; k < i; k++) {
+            const char *other = dem_file_name(inputs->items[k]), *other_dot = strrchr(other, '.');
+            int other_stem = (int)(other_dot && other_dot != other ? other_dot - other : (long)strlen(other));
+            same += other_stem == stem && strncmp(other, file, (size_t)stem) == 0;
+        }
+        char number[16] = "";
+        if (same > 1)
+            snprintf(number, sizeof number, "_%d", same);
+        if (asprintf(&names[i], "%.*s%s", stem, file, number) < 0)
+            names[i] = NULL;
+    }
+    return names;
+}
+
+// grains run side by side, each on one core; alone, a grain gets them all
+static void run_grains(cli_session *session, const cli_texts *inputs, char **names, const job_options *options,
+                       job_results *results)
+{
+    job_results *each = calloc(inputs->count, sizeof *each);
+    int count = (int)inputs->count;
+    dem_ctx all = cli_ctx(session, NULL);
+    session->jobs = inputs->count;
+    if (!each)
+        return;
+#pragma omp parallel for schedule(dynamic, 1) num_threads(dem_threads(&all)) if (count > 1)
+    for (int i = 0; i < count; i++) {
+        dem_ctx ctx = cli_ctx(session, inputs->items[i]);
+        if (count > 1)
+            ctx.threads = 1;
+        if (!cli_interrupted() && names[i])
+            job_run(&ctx, inputs->items[i], names[i], options, &each[i]);
+        for (size_t k = 0; k < each[i].count; k++)
+            if (each[i].items[k].status != DEM_OK)
+                cli_session_error(session, &each[i].items[k].error);
+        cli_job_done(session);
+    }
+    for (int i = 0; i < count; i++) {
+        for (size_t k = 0; k < each[i].count; k++)
+            if (dem_grow(&results->items, &results->capacity, results->count, sizeof *results->items))
+                results->items[results->count++] = each[i].items[k];
+        free(each[i].items);
+    }
+    free(each);
+}
+
+static int write_report(const cli_tool *tool, const arguments *a, const job_options *options,
+                        const job_results *results, bool several, const char *table)
+{
+    dem_buffer text = {0};
+    dem_error error;
+    bool to_stdout = false;
+    for (size_t i = 0; i < options->outputs.count; i++)
+        to_stdout |= strcmp(options->outputs.items[i], "-") == 0;
+    if (table) {
+        report_csv(&text, results);
+        if (dem_file_write_buffer(table, &text, &error) != DEM_OK)
+            return cli_error(tool, &error);
+    }
+    if (a->common.json)
+        report_json(&text, results, several);
+    else if (to_stdout || a->common.quiet)
+        return 0;
+    else if (several && !table)
+        report_csv(&text, results);
+    else if (!several)
+        for (size_t i = 0; i < results->count; i++)
+            report_text(&text, &results->items[i], options);
+    return text.size ? cli_print(tool, &text) : 0;
+}
+
+static int exit_status(const job_results *results, bool several)
+{
+    int status = 0;
+    for (size_t i = 0; i < results->count; i++) {
+        int code = (int)results->items[i].status;
+        if (code == DEM_NO_MEMORY)
+            code = DEM_FAILED;
+        if (code == DEM_UNAVAILABLE || (code != 0 && several))
+            code = DEM_BAD_INPUT;
+        if (code != 0)
+            status = code;
+    }
+    return cli_interrupted() ? DEM_INTERRUPTED : status;
+}
+
+static int run(const cli_tool *tool, const arguments *a, const cli_texts *inputs)
+{
+    job_options options = job_options_from(a);
+    dem_error error;
+    const char *table = NULL;
+    bool several = inputs->count > 1;
+    if (a->unit && dem_unit(a->unit, DEM_DIMENSION_LENGTH, &options.unit, &error) != DEM_OK)
+        return cli_wrong_usage(tool, "--unit: %s", error.text);
+    if (a->inscribed && a->outer)
+        return cli_wrong_usage(tool, "--inscribed and --outer exclude each other");
+    cli_texts files = {.items = calloc(a->outputs.count + 1, sizeof *files.items)};
+    char **names = grain_names(inputs);
+    int status = files.items && names ? sort_outputs(tool, &options, several, &files, &table)
+                                      : cli_error(tool, &(dem_error){.code = DEM_NO_MEMORY, .text = "out of memory"});
+    if (status == 0) {
+        cli_session session;
+        job_results results = {0};
+        cli_begin(&session, tool, &a->common);
+        run_grains(&session, inputs, names, &options, &results);
+        cli_end(&session);
+        status = write_report(tool, a, &options, &results, several || a->split, table);
+        if (status == 0)
+            status = exit_status(&results, several);
+        job_results_release(&results);
+    }
+    for (size_t i = 0; names && i < inputs->count; i++)
+        free(names[i]);
+    free(names);
+    free(files.items);
+    return status;
+}
+
+int main(int argc, char **argv)
+{
+    arguments a = default_arguments();
+    const cli_option options[] = {
+        {.help = "Spheres"},
+        {"spheres", 'n', CLI_WHOLE, "N", "at most N spheres (default 50)", &a.spheres, 1, 100000},
+        {"gap", 'e', CLI_PERCENT, "PCT", "instead: the fewest spheres whose IoU gap is at most PCT %", &a.gap, 1e-3, 99},
+        {"max-spheres", 0, CLI_WHOLE, "N", "bound of -e (default 2000)", &a.max_spheres, 1, 100000},
+        {"effort", 0, CLI_CHOICE, effort_names, "how hard to search (default: default)", &a.effort, 0, 0},
+        {"moments", 0, CLI_CHOICE, moments_names,
+         "what the union of the spheres shall have exactly of the grain (default exact: volume, centre, inertia)",
+         &a.moments, 0, 0},
+        {"inscribed", 0, CLI_FLAG, NULL, "no sphere reaches outside the mesh", &a.inscribed, 0, 0},
+        {"outer", 0, CLI_FLAG, NULL, "no part of the mesh is left uncovered", &a.outer, 0, 0},
+        {"method", 0, CLI_TEXT, "NAME", "packing method (default optimal)", &a.method, 0, 0},
+        {"methods", 0, CLI_FLAG, NULL, "list the methods and leave", &a.methods, 0, 0},
+        {.help = "Mesh"},
+        {"unit", 0, CLI_TEXT, "UNIT", "length unit of the file (default m)", &a.unit, 0, 0},
+        {"size", 0, CLI_LENGTH, "D", "rescale to this equivalent-volume diameter, as in 2mm", &a.size, CLI_POSITIVE,
+         INFINITY},
+        {"density", 0, CLI_DENSITY, "RHO", "density, kg/m3 or with unit (default 2650)", &a.density, CLI_POSITIVE,
+         INFINITY},
+        {"mass-from", 0, CLI_CHOICE, mass_names, "whose mass, centre and inertia the clump gets (default mesh)",
+         &a.mass_from, 0, 0},
+        {"repair", 0, CLI_CHOICE, repair_names, "what to do with a faulty mesh (default auto)", &a.repair, 0, 0},
+        {"wrap-detail", 0, CLI_PERCENT, "PCT", "smallest feature --repair wrap follows, % of the size (default 0.5)",
+         &a.wrap_detail, 0.01, 50},
+        {"keep", 0, CLI_CHOICE, keep_names, "what to do with several separate bodies (default one: refuse)", &a.keep, 0,
+         0},
+        {"split", 0, CLI_FLAG, NULL, "one clump per body", &a.split, 0, 0},
+        {.help = "Output"},
+        {"output", 'o', CLI_TEXTS, "FILE", "where to; the format follows the name; repeatable (default NAME.json)",
+         &a.outputs, 0, 0},
+        {"format", 0, CLI_TEXTS, "NAME", "format where the name does not tell: json, xyzr, vtp, stl, png", &a.formats, 0,
+         0},
+        {"frame", 0, CLI_CHOICE, frame_names,
+         "frame of xyzr, vtp, stl (default principal; mesh: the file's own, in metres)", &a.frame, 0, 0},
+        CLI_COMMON_OPTIONS(a.common),
+    };
+    const cli_tool tool = {"dem-clump", "MESH... [options]", about, options, sizeof options / sizeof *options, epilogue};
+    cli_texts inputs = {0};
+    int status;
+    if (cli_parse(&tool, argc, argv, &inputs, &status) == CLI_GO) {
+        if (a.methods)
+            status = list_methods(&tool);
+        else if (inputs.count == 0)
+            status = cli_wrong_usage(&tool, "no mesh given");
+        else
+            status = run(&tool, &a, &inputs);
+    }
+    cli_texts_release(&inputs);
+    cli_texts_release(&a.outputs);
+    cli_texts_release(&a.formats);
+    return status;
+}
