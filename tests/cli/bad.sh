@@ -8,7 +8,7 @@
 volume_of() {
     local file=$1
     shift
-    run 0 dem-clump "$file" -n 1 --effort fast --moments free --json -o c.json "$@"
+    run 0 dem-clump "$file" -n 4 --effort fast --moments free --json -o c.json "$@"
     volume=$(awk '/"solid"/ { gsub(/[,{}]/, " "); for (i = 1; i < NF; i++) if ($i == "\"volume\":") print $(i + 1) }' out)
     grep -qiE '\b(nan|inf)' out c.json && fail "$file: a number that is none"
 }
