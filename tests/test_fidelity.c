@@ -465,6 +465,9 @@ static void what_cannot_be_measured_is_refused(void **state)
     dem_fidelity f;
     dem_error error;
     check(dem_fidelity_measure(NULL, &mesh, &ball, 0, 0, &f, &error) == DEM_USAGE);
+    ball.radius = -1;
+    check(dem_fidelity_measure(NULL, &mesh, &ball, 1, 0, &f, &error) == DEM_USAGE);
+    ball.radius = 1;
     shape_flip(&mesh, 0, 12);
     check(dem_fidelity_measure(NULL, &mesh, &ball, 1, 0, &f, &error) == DEM_BAD_INPUT);
     mesh.triangle_count = 0;

@@ -145,9 +145,9 @@ static int larger_first(const void *left, const void *right)
 // that is r <= (e.e - SMOOTH^2) / (2 (n.e - SMOOTH)) for every q with n.e > SMOOTH.
 static dem_ball touching_ball(const cloud *c, dem_vec3 p, dem_vec3 n)
 {
-    float least[LANES], px = (float)p.x, py = (float)p.y, pz = (float)p.z, nx = (float)n.x, ny = (float)n.y,
-                        nz = (float)n.z;
-    const float deep = (float)SMOOTH;
+    const float px = (float)p.x, py = (float)p.y, pz = (float)p.z;
+    const float nx = (float)n.x, ny = (float)n.y, nz = (float)n.z, deep = (float)SMOOTH;
+    float least[LANES];
     for (int k = 0; k < LANES; k++)
         least[k] = LARGEST;
     for (size_t b = 0; b < c->blocks; b++) {
@@ -180,14 +180,16 @@ static dem_vec3 nearest(const cloud *c, dem_vec3 p)
     return c->points[at].point;
 }
 
-// radius of the largest ball inside: from a good one away from the nearest wall, by ever smaller steps
+// radius of the largest ball inside: from a good one away from the nearest wall, by ever smaller steps, none through it
 static double inscribed_radius(const cloud *c, dem_vec3 centre)
 {
-    double best = v3_distance(centre, nearest(c, centre)), step = 0.2 * best;
+    double best = 0, step = INFINITY;
     for (int k = 0; k < CLIMBS; k++, step *= 0.88) {
-        dem_vec3 wall = nearest(c, centre);
-        centre = v3_along(centre, step, v3_unit(v3_sub(centre, wall)));
-        best = fmax(best, v3_distance(centre, nearest(c, centre)));
+        dem_vec3 away = v3_sub(centre, nearest(c, centre));
+        double room = v3_norm(away);
+        best = fmax(best, room);
+        step = fmin(step, 0.2 * best);
+        centre = v3_along(centre, fmin(step, 0.9 * room), v3_unit(away));
     }
     return best;
 }

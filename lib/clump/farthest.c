@@ -7,7 +7,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { MAX_CELLS = 3000, MAX_LEVELS = 48, MAX_VERTICES = 60000, CHUNK = 32 };
+enum { MAX_CELLS = 3000, MANY_CELLS = 200000, MAX_LEVELS = 48, MAX_VERTICES = 60000, CHUNK = 32 };
 #define GAIN 0.003  // smallest relative gain worth another subdivision [-]
 #define SPREAD 1.3  // a sample stands for the surface so far around it, in square roots of its area [-]
 
@@ -364,9 +364,12 @@ static bool mesh_collect(search *s, mesh_samples *m)
         return false;
     for (size_t v = 0; v < vertex_count; v++)
         s->best = fmax(s->best, m->vertex[v]);
-    for (size_t n = 0; n < mesh->node_count; n++)
+    for (size_t n = 0; n < mesh->node_count; n++) {
         if (!mesh->nodes[n].right)
             leaf_collect(s, m, &mesh->nodes[n], &at);
+        if (s->next.count > MANY_CELLS)  // memory stays bounded for millions of triangles
+            cells_thin(s, &s->next, 2 * MAX_CELLS);
+    }
     return true;
 }
 

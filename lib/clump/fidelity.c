@@ -35,6 +35,7 @@ static dem_status subject_make(subject *s, const dem_mesh *mesh, const dem_ball 
     *s = (subject){0};
     if (mesh->triangle_count == 0 || count == 0)
         return dem_fail(error, DEM_USAGE, "nothing to compare; give a mesh with faces and at least one sphere");
+    DEM_TRY(dem_balls_check(balls, count, error));
     s->solid = dem_mesh_solid(mesh);
     s->size = cbrt(6 / DEM_PI * s->solid.volume);
     if (!(s->size > 0) || !isfinite(s->size))
@@ -71,7 +72,9 @@ static dem_status difference(const subject *s, double lines, int threads, double
         DEM_TRY(dem_line_bundle_measure(&s->bodies, &bundle, threads, groups, error));
         double mean = 0, square = 0;
         for (int g = 0; g < DEM_LINE_GROUPS; g++) {
-            double only = groups[g].mesh + groups[g].balls - 2 * groups[g].both;
+            // lines where the mesh is open are left out; the others stand for them
+            double heard = 1 - (double)groups[g].broken / fmax(1, (double)groups[g].lines);
+            double only = (groups[g].mesh + groups[g].balls - 2 * groups[g].both) / fmax(heard, 0.1);
             mean += only / DEM_LINE_GROUPS;
             square += only * only / DEM_LINE_GROUPS;
         }
@@ -88,7 +91,7 @@ static dem_status gap_measure(const subject *s, double union_volume, size_t line
 {
     double volume, deviation, count = lines ? (double)lines : FIRST_LINES;
     DEM_TRY(difference(s, count, threads, &volume, &deviation, error));
-    for (; !lines && deviation > GAP_ERROR * volume && count < MOST_LINES;) {
+    while (!lines && deviation > GAP_ERROR * volume && count < MOST_LINES) {
         count *= fmin(8, fmax(2, pow(deviation / (GAP_ERROR * volume), 1.5)));
         DEM_TRY(difference(s, count, threads, &volume, &deviation, error));
     }

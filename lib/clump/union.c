@@ -6,15 +6,7 @@
 dem_status dem_balls_union(const dem_ball *balls, size_t count, dem_union *result, dem_error *error)
 {
     *result = (dem_union){0};
-    for (size_t i = 0; i < count; i++) {
-        dem_vec3 c = balls[i].centre;
-        double r = balls[i].radius;
-        if (!(r > 0) || !isfinite(r) || !isfinite(v3_norm2(c)))
-            return dem_fail(error, DEM_USAGE,
-                            "sphere %zu is (%g, %g, %g) with radius %g; give finite centres and "
-                            "positive radii",
-                            i + 1, c.x, c.y, c.z, r);
-    }
+    DEM_TRY(dem_balls_check(balls, count, error));
     // about a ball of the clump, so that a clump far from the origin keeps its centre and inertia
     dem_ball *local = dem_alloc(count, sizeof *local);
     if (!local)

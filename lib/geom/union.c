@@ -92,6 +92,19 @@ static bool boundary_closes(const dem_ball *balls, const dem_patch *patches, siz
     return open <= CLOSURE * area * size;
 }
 
+dem_status dem_balls_check(const dem_ball *balls, size_t count, dem_error *error)
+{
+    for (size_t i = 0; i < count; i++) {
+        dem_vec3 c = balls[i].centre;
+        double r = balls[i].radius;
+        if (!(r > 0) || !isfinite(r) || !isfinite(v3_norm2(c)))
+            return dem_fail(error, DEM_USAGE,
+                            "sphere %zu is (%g, %g, %g) with radius %g; give finite centres and positive radii", i + 1,
+                            c.x, c.y, c.z, r);
+    }
+    return DEM_OK;
+}
+
 static bool union_compute(const dem_ball_tree *tree, bool want_arcs, dem_ball_union *result)
 {
     const dem_ball *balls = tree->balls;

@@ -42,6 +42,9 @@ typedef struct dem_ball_union {
     bool consistent;    ///< false: a patch area was in doubt (sampled and integrated areas disagree)
 } dem_ball_union;
 
+/// Finite centres and positive finite radii, or DEM_USAGE.
+dem_status dem_balls_check(const dem_ball *balls, size_t count, dem_error *error);
+
 /// Exact to rounding, coincidences included; work and memory grow with the overlapping pairs. Far from the origin the
 /// moments about it lose what their size loses, patches and area do not. `want_arcs` also lists the crease
 /// arcs and the caps.
