@@ -83,7 +83,7 @@ static void the_tree_finds_what_all_pairs_find(void **state)
         dem_error error;
         dem_crossings found;
         check_ok(dem_tree_build(&tree, vertices, triangles, COUNT, &error), error);
-        check_ok(dem_mesh_crossings(&mesh, &tree, SIZE_MAX, &found, &error), error);
+        check_ok(dem_mesh_crossings(NULL, &mesh, &tree, SIZE_MAX, &found, &error), error);
         size_t want = 0;
         for (uint32_t i = 0; i < COUNT; i++)
             for (uint32_t k = 0; k < i; k++) {
@@ -97,7 +97,7 @@ static void the_tree_finds_what_all_pairs_find(void **state)
         check(found.complete && found.count == want && want > 100);
         free(found.pairs);
         // and stops where it is told to
-        check_ok(dem_mesh_crossings(&mesh, &tree, 10, &found, &error), error);
+        check_ok(dem_mesh_crossings(NULL, &mesh, &tree, 10, &found, &error), error);
         check(!found.complete && found.count > 10 && found.count < want);
         free(found.pairs);
         dem_tree_release(&tree);
@@ -113,7 +113,7 @@ static void a_clean_grain_does_not_cross_itself_and_two_interlocked_ones_do(void
         dem_error error;
         dem_crossings found;
         check_ok(dem_tree_build(&tree, grain.vertices, grain.triangles, grain.triangle_count, &error), error);
-        check_ok(dem_mesh_crossings(&grain, &tree, SIZE_MAX, &found, &error), error);
+        check_ok(dem_mesh_crossings(NULL, &grain, &tree, SIZE_MAX, &found, &error), error);
         check(k == 0 ? found.count == 0 : found.count > 20);
         for (size_t i = 0; i < found.count; i++)
             check((found.pairs[i][0] < 1152) != (found.pairs[i][1] < 1152));

@@ -2,6 +2,7 @@
 // with the shared points, segments and polygons as constraints. Neighbours compute the same points from their own
 // side; being exact, they are equal, and one number is given to both.
 #include <CGAL/Constrained_Delaunay_triangulation_2.h>
+#include <CGAL/Constrained_triangulation_plus_2.h>
 #include <CGAL/Exact_predicates_exact_constructions_kernel.h>
 #include <CGAL/intersections.h>
 
@@ -15,7 +16,9 @@ using Kernel = CGAL::Exact_predicates_exact_constructions_kernel;
 using Point = Kernel::Point_3;
 using Flat = Kernel::Point_2;
 using Cut = std::vector<Point>; // a point, a segment, or the corners of a polygon
-using Planar = CGAL::Constrained_Delaunay_triangulation_2<Kernel, CGAL::Default, CGAL::Exact_intersections_tag>;
+// remembers whole constraints, so that crossing points are computed from their true ends, not from one another
+using Planar = CGAL::Constrained_triangulation_plus_2<
+    CGAL::Constrained_Delaunay_triangulation_2<Kernel, CGAL::Default, CGAL::Exact_intersections_tag>>;
 
 struct Share : boost::static_visitor<Cut> {
     Cut operator()(const Point &p) const { return {p}; }

@@ -7,7 +7,7 @@
 
 #include "math/orient.h"
 
-enum { WORK_PER_TRIANGLE = 1000, WORK_BASE = 1000000 };
+enum { WORK_PER_TRIANGLE = 1000, WORK_BASE = 1000000, WORK_BETWEEN_REPORTS = 10000000 };
 
 typedef struct corners {
     dem_vec3 p[3];
@@ -163,7 +163,7 @@ typedef struct search {
     const dem_mesh *mesh;
     const dem_tree *tree;
     dem_crossings *found;
-    size_t room, max_pairs, work;
+    size_t room, work;
 } search;
 
 // triangles of two leaves, or within one; false: out of memory
@@ -211,24 +211,28 @@ static bool test_leaf(search *s, const dem_box_node *leaf)
     return true;
 }
 
-dem_status dem_mesh_crossings(const dem_mesh *mesh, const dem_tree *tree, size_t max_pairs, dem_crossings *crossings,
-                              dem_error *error)
+dem_status dem_mesh_crossings(const dem_ctx *ctx, const dem_mesh *mesh, const dem_tree *tree, size_t max_pairs,
+                              dem_crossings *crossings, dem_error *error)
 {
     *crossings = (dem_crossings){.complete = true};
-    search s = {.mesh = mesh, .tree = tree, .found = crossings, .max_pairs = max_pairs};
-    size_t max_work = WORK_BASE + WORK_PER_TRIANGLE * mesh->triangle_count;
-    for (size_t i = 0; i < tree->node_count; i++) {
+    search s = {.mesh = mesh, .tree = tree, .found = crossings};
+    size_t max_work = WORK_BASE + WORK_PER_TRIANGLE * mesh->triangle_count, told = 0;
+    dem_status status = DEM_OK;
+    for (size_t i = 0; i < tree->node_count && status == DEM_OK && crossings->complete; i++) {
         if (tree->nodes[i].right)
             continue;
-        if (!test_leaf(&s, &tree->nodes[i])) {
-            free(crossings->pairs);
-            *crossings = (dem_crossings){0};
-            return dem_fail_memory(error);
-        }
-        if (crossings->count > max_pairs || s.work > max_work) {
-            crossings->complete = false;
-            break;
+        if (!test_leaf(&s, &tree->nodes[i]))
+            status = dem_fail_memory(error);
+        crossings->complete = crossings->count <= max_pairs && s.work <= max_work;
+        if (s.work - told > WORK_BETWEEN_REPORTS) {
+            told = s.work;
+            if (dem_progress(ctx, "checking", (double)i / (double)tree->node_count))
+                status = dem_fail(error, DEM_INTERRUPTED, "interrupted");
         }
     }
-    return DEM_OK;
+    if (status != DEM_OK) {
+        free(crossings->pairs);
+        *crossings = (dem_crossings){0};
+    }
+    return status;
 }

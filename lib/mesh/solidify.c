@@ -14,7 +14,7 @@ static const double DUST = 1e-4;      // part of the largest body's volume below
 static const double POCKET = 1e-6;    // the same for a cavity
 static const double HARMLESS = 1e-3;  // part of the area in crossing triangles that may stay where CGAL is missing
 
-enum { MOST_CROSSINGS = 30000, CHECKED_TRIANGLES = 2000000, LISTED_BODIES = 5 };
+enum { MOST_CROSSINGS = 100000, LISTED_BODIES = 5 };
 
 static dem_status find_shells(dem_mender *m)
 {
@@ -175,13 +175,9 @@ static dem_status unite(dem_mender *m, const dem_crossings *crossings)
 static dem_status find_crossings(dem_mender *m, dem_crossings *crossings)
 {
     *crossings = (dem_crossings){0};
-    if (m->mesh->triangle_count > CHECKED_TRIANGLES) {
-        dem_log(m->ctx, DEM_LOG_INFO, "%zu triangles: not checked for crossing each other", m->mesh->triangle_count);
-        return DEM_OK;
-    }
     dem_tree tree;
     DEM_TRY(dem_tree_build(&tree, m->mesh->vertices, m->mesh->triangles, m->mesh->triangle_count, m->error));
-    dem_status status = dem_mesh_crossings(m->mesh, &tree, MOST_CROSSINGS, crossings, m->error);
+    dem_status status = dem_mesh_crossings(m->ctx, m->mesh, &tree, MOST_CROSSINGS, crossings, m->error);
     dem_tree_release(&tree);
     if (status != DEM_OK)
         return status;
