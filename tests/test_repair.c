@@ -149,6 +149,28 @@ static void loose_triangles_are_welded_exactly_or_with_a_warning(void **state)
     dem_mesh_free(&rough);
 }
 
+// two halves of a grain whose rims miss each other by far more than rounding
+static void a_seam_is_welded_as_wide_as_its_edges_allow(void **state)
+{
+    (void)state;
+    for (int wide = 0; wide < 2; wide++) {
+        dem_mesh grain = shape_grain(6), half = shape_grain(6);
+        double volume = grain_volume(6), gap = wide ? 1e-2 : 1e-4;
+        // the first four octants of the triangles have z > 0, the others z < 0
+        shape_move(&half, (dem_quat){1, 0, 0, 0}, v3(gap, 0, 0));
+        grain.triangle_count = 144;
+        shape_append(&grain, &half, 144, 288);
+        if (wide) {
+            check_refused(&grain, DEM_REPAIR_AUTO, "open");
+        } else {
+            outcome o = check_repaired(&grain, volume, 1e-4);
+            check(o.report.welded_vertices == 24 && o.report.warnings == 1 && strstr(o.log.text, "1e-04 of the diagonal"));
+        }
+        dem_mesh_free(&grain);
+        dem_mesh_free(&half);
+    }
+}
+
 static void triangles_without_area_go(void **state)
 {
     (void)state;
@@ -523,6 +545,7 @@ int main(void)
         cmocka_unit_test(an_unlikely_size_is_repaired_with_a_hint),
         cmocka_unit_test(unused_vertices_do_not_count),
         cmocka_unit_test(loose_triangles_are_welded_exactly_or_with_a_warning),
+        cmocka_unit_test(a_seam_is_welded_as_wide_as_its_edges_allow),
         cmocka_unit_test(triangles_without_area_go),
         cmocka_unit_test(duplicates_go_whichever_way_they_face),
         cmocka_unit_test(an_inside_out_mesh_is_turned),

@@ -8,6 +8,8 @@
 #include "mesh/prune.h"
 #include "mesh/weld.h"
 
+enum { MOST_PASSES = 50 };               // over fins on fins
+
 static const double SMALL_HOLES = 0.05;  // part of volume and of area that may be guessed
 
 dem_status dem_mender_drop(dem_mender *m, const unsigned char *drop)
@@ -25,7 +27,7 @@ dem_status dem_mender_drop(dem_mender *m, const unsigned char *drop)
 static dem_status drop_fins(dem_mender *m, unsigned char *drop)
 {
     size_t dropped = 0, count;
-    while ((count = dem_surface_mark_fins(&m->surface, drop)) > 0) {
+    for (int i = 0; i < MOST_PASSES && (count = dem_surface_mark_fins(&m->surface, drop)) > 0; i++) {
         dropped += count;
         DEM_TRY(dem_mender_drop(m, drop));
     }

@@ -227,7 +227,7 @@ dem_status dem_mesh_crossings(const dem_ctx *ctx, const dem_mesh *mesh, const de
         if (s.work - told > WORK_BETWEEN_REPORTS) {
             told = s.work;
             if (dem_progress(ctx, "checking", (double)i / (double)tree->node_count))
-                status = dem_fail(error, DEM_INTERRUPTED, "interrupted");
+                status = dem_fail(error, DEM_INTERRUPTED, "interrupted while checking the mesh");
         }
     }
     if (status != DEM_OK) {

@@ -8,8 +8,9 @@
 #include "base/memory.h"
 #include "mesh/cgal.h"
 #include "mesh/mass.h"
+#include "mesh/weld.h"
 
-enum { THIN_ABOVE = 200000, THIN_FACTOR = 8, CELLS = 1 << 20 };
+enum { THIN_ABOVE = 50000, THIN_FACTOR = 12, CELLS = 1 << 20 };
 
 typedef struct cell_map {
     uint64_t *keys;    // 0: free
@@ -58,19 +59,12 @@ static void merge_cells(dem_mesh *mesh, cell_map *map, uint32_t *number, dem_vec
     for (size_t i = 0; i < map->count; i++)
         mesh->vertices[i] = v3_scale(sums[i], 1 / weights[i]);
     mesh->vertex_count = map->count;
-    size_t kept = 0;
-    for (size_t i = 0; i < mesh->triangle_count; i++) {
-        uint32_t *t = mesh->triangles + 3 * i;
-        if (t[0] != t[1] && t[1] != t[2] && t[2] != t[0])
-            memmove(mesh->triangles + 3 * kept++, t, 3 * sizeof *t);
-    }
-    mesh->triangle_count = kept;
+    dem_mesh_drop_collapsed(mesh);
 }
 
 // in place, to about `triangles`
 static dem_status thin(dem_mesh *mesh, size_t triangles, dem_error *error)
 {
-    dem_status status = DEM_OK;
     cell_map map = {.mask = 1023};
     while (map.mask < 2 * mesh->vertex_count)
         map.mask = 2 * map.mask + 1;
@@ -79,18 +73,20 @@ static dem_status thin(dem_mesh *mesh, size_t triangles, dem_error *error)
     uint32_t *number = dem_alloc(mesh->vertex_count, sizeof *number);
     dem_vec3 *sums = dem_alloc_zero(mesh->vertex_count, sizeof *sums);
     double *weights = dem_alloc_zero(mesh->vertex_count, sizeof *weights);
-    if (map.keys && map.numbers && number && sums && weights) {
+    int *layers = dem_alloc(mesh->triangle_count, sizeof *layers);
+    bool fine = map.keys && map.numbers && number && sums && weights && layers;
+    if (fine) {
         memset(number, 0xff, mesh->vertex_count * sizeof *number);
         merge_cells(mesh, &map, number, sums, weights, cell_size(mesh, triangles));
-    } else {
-        status = dem_fail_memory(error);
+        fine = dem_mesh_merge_layers(mesh, layers);  // folds that came to lie on each other
     }
     free(map.keys);
     free(map.numbers);
     free(number);
     free(sums);
     free(weights);
-    return status;
+    free(layers);
+    return fine ? DEM_OK : dem_fail_memory(error);
 }
 
 static void move(dem_mesh *mesh, dem_vec3 shift, double factor)

@@ -11,9 +11,9 @@
 #include "mesh/mender.h"
 #include "mesh/weld.h"
 
-static const double WELD = 1e-6;          // tolerance of the second weld over the diagonal
-static const double COARSE_NUMBERS = 1e-5; // spacing of the coordinates over the diagonal that deserves a warning
-static const double NO_VOLUME = 1e-9;     // volume over area^1.5
+static const double WELD = 1e-6, WIDEST_WELD = 1e-4;  // tolerances of the second weld over the diagonal
+static const double COARSE_NUMBERS = 1e-5;            // spacing of the coordinates over the diagonal to warn of
+static const double NO_VOLUME = 1e-9;                 // volume over area^1.5
 static const double SMALL_GRAIN = 1e-7, LARGE_GRAIN = 1e5;  // [m]
 
 dem_status dem_mender_note(dem_mender *m, const char *format, ...)
@@ -91,24 +91,38 @@ static dem_status drop_collapsed(dem_mender *m)
     return DEM_OK;
 }
 
-static dem_status weld_borders(dem_mender *m)
+// marks the vertices on borders; returns the length of the shortest border edge
+static double mark_borders(const dem_mender *m, unsigned char *marked)
+{
+    double shortest = INFINITY;
+    for (uint32_t h = 0; h < 3 * m->mesh->triangle_count; h++) {
+        if (m->surface.edges.twin[h] != DEM_EDGE_BORDER)
+            continue;
+        uint32_t a = half_start(m->mesh, h), b = half_end(m->mesh, h);
+        marked[a] = marked[b] = 1;
+        shortest = fmin(shortest, v3_distance(m->mesh->vertices[a], m->mesh->vertices[b]));
+    }
+    return shortest;
+}
+
+// welds border vertices within `tolerance`, unless that could close an edge
+static dem_status weld_borders(dem_mender *m, double tolerance)
 {
     unsigned char *marked = dem_alloc_zero(m->mesh->vertex_count, 1);
     if (!marked)
         return dem_fail_memory(m->error);
-    for (uint32_t h = 0; h < 3 * m->mesh->triangle_count; h++)
-        if (m->surface.edges.twin[h] == DEM_EDGE_BORDER)
-            marked[half_start(m->mesh, h)] = marked[half_end(m->mesh, h)] = 1;
-    double tolerance = WELD * m->size;
-    size_t merged;
-    dem_status status = dem_mesh_weld_near(m->mesh, marked, tolerance, &merged, m->error);
+    size_t merged = 0;
+    double shortest = mark_borders(m, marked);
+    dem_status status = DEM_OK;
+    if (tolerance <= WELD * m->size || tolerance < shortest / 4)
+        status = dem_mesh_weld_near(m->mesh, marked, tolerance, &merged, m->error);
     free(marked);
     if (status != DEM_OK || merged == 0)
         return status;
-    m->report->welded_vertices = merged;
+    m->report->welded_vertices += merged;
     m->report->weld_tolerance = tolerance;
-    DEM_TRY(dem_mender_note(m, "welded %zu vert%s within %.2g m, 1e-6 of the diagonal", merged, merged == 1 ? "ex" : "ices",
-                            tolerance));
+    DEM_TRY(dem_mender_note(m, "welded %zu vert%s within %.2g m, %.0e of the diagonal", merged, merged == 1 ? "ex" : "ices",
+                            tolerance, tolerance / m->size));
     DEM_TRY(drop_collapsed(m));
     return build_surface(m);
 }
@@ -123,8 +137,8 @@ static dem_status weld(dem_mender *m)
         return dem_surface_build(&m->surface, m->mesh, m->error);
     DEM_TRY(build_surface(m));
     m->report->boundary_edges = m->surface.edges.border;
-    if (m->surface.edges.border)
-        DEM_TRY(weld_borders(m));
+    for (double part = WELD; part < 1.1 * WIDEST_WELD && m->surface.edges.border; part *= 10)
+        DEM_TRY(weld_borders(m, part * m->size));
     m->report->nonmanifold_edges = m->surface.edges.many;
     return DEM_OK;
 }
@@ -234,6 +248,8 @@ dem_status dem_mesh_repair(const dem_ctx *ctx, dem_mesh *mesh, const dem_repair_
     dem_status status = check_numbers(&m);
     if (status == DEM_OK)
         status = weld(&m);
+    if (status == DEM_OK && dem_progress(ctx, "repairing", 0.3))
+        status = dem_fail(error, DEM_INTERRUPTED, "interrupted while repairing the mesh");
     if (status == DEM_OK && m.options.repair == DEM_REPAIR_NONE)
         status = take(&m);
     else if (status == DEM_OK)

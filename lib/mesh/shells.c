@@ -164,7 +164,7 @@ static bool list_hosts(dem_shells *shells, passes *p, uint32_t shell, size_t *ro
 
 dem_status dem_shells_nest(dem_shells *shells, const dem_mesh *mesh, dem_error *error)
 {
-    if (shells->count == 1)
+    if (shells->count == 1 || shells->nested)
         return DEM_OK;
     dem_tree tree;
     DEM_TRY(dem_tree_build(&tree, mesh->vertices, mesh->triangles, mesh->triangle_count, error));
@@ -181,6 +181,7 @@ dem_status dem_shells_nest(dem_shells *shells, const dem_mesh *mesh, dem_error *
     }
     passes_release(&p);
     dem_tree_release(&tree);
+    shells->nested = fine;
     return fine ? DEM_OK : dem_fail_memory(error);
 }
 

@@ -19,12 +19,13 @@ typedef struct dem_shells {
     dem_shell *list;   ///< [count]
     size_t count;
     uint32_t *hosts;   ///< shells that a shell lies in, shell by shell
+    bool nested;       ///< the hosts are known
 } dem_shells;
 
 /// Patches that bound something only together are one shell. The surface is closed and oriented.
 dem_status dem_shells_find(dem_shells *shells, const dem_surface *surface, dem_error *error);
 
-/// Fills the hosts. Shells marked `entangled` lie in none.
+/// Fills the hosts, once. Shells marked `entangled` lie in none.
 dem_status dem_shells_nest(dem_shells *shells, const dem_mesh *mesh, dem_error *error);
 void dem_shells_release(dem_shells *shells);
 

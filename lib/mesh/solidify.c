@@ -167,8 +167,8 @@ static dem_status unite(dem_mender *m, const dem_crossings *crossings)
     if (entangled)
         return dem_mender_note(m, "united %zu overlapping shells (%zu crossing pairs of triangles); volume %+.3g %%",
                                entangled, crossings->count, 100 * (volume - was) / volume);
-    return dem_mender_note(m, "the surface crossed itself in %zu pair%s of triangles; kept the outline of what it winds "
-                              "around; volume %+.3g %%",
+    return dem_mender_note(m, "the surface crosses itself in %zu pair%s of triangles; kept the outline of the solid it "
+                              "winds around; volume %+.3g %%",
                            crossings->count, plural(crossings->count), 100 * (volume - was) / volume);
 }
 
@@ -243,7 +243,7 @@ dem_status dem_mender_solidify(dem_mender *m)
     if (status == DEM_OK && crossings.count)
         status = unite(m, &crossings);
     free(crossings.pairs);
-    if (status == DEM_OK && m->shells.count > 1)
+    if (status == DEM_OK)
         status = dem_shells_nest(&m->shells, m->mesh, m->error);
     if (status == DEM_OK)
         status = drop_inner_shells(m);

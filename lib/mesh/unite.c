@@ -12,73 +12,7 @@
 
 enum { SEEDS = 3, DIRECTIONS = 5 };
 
-typedef struct triangle_key {
-    uint32_t corner[3];  // ascending
-    uint32_t triangle;
-    bool odd;            // an odd number of exchanges sorts the corners
-} triangle_key;
-
-static triangle_key key_of(const dem_mesh *mesh, uint32_t triangle)
-{
-    const uint32_t *v = mesh->triangles + 3 * (size_t)triangle;
-    triangle_key key = {{v[0], v[1], v[2]}, triangle, false};
-    for (int pass = 0; pass < 2; pass++)
-        for (int k = 0; k < 2; k++)
-            if (key.corner[k] > key.corner[k + 1]) {
-                uint32_t swap = key.corner[k];
-                key.corner[k] = key.corner[k + 1];
-                key.corner[k + 1] = swap;
-                key.odd = !key.odd;
-            }
-    return key;
-}
-
-static int by_corners(const void *pa, const void *pb)
-{
-    const triangle_key *a = pa, *b = pb;
-    for (int k = 0; k < 3; k++)
-        if (a->corner[k] != b->corner[k])
-            return a->corner[k] < b->corner[k] ? -1 : 1;
-    return (a->triangle > b->triangle) - (a->triangle < b->triangle);
-}
-
-// triangles in the same place become one, turned and counted by how many more lie one way than the other
-static bool merge_layers(dem_mesh *mesh, int *layers)
-{
-    size_t count = mesh->triangle_count;
-    triangle_key *keys = dem_alloc(count, sizeof *keys);
-    unsigned char *drop = dem_alloc_zero(count, 1);
-    if (!keys || !drop) {
-        free(keys);
-        free(drop);
-        return false;
-    }
-    for (uint32_t t = 0; t < count; t++)
-        keys[t] = key_of(mesh, t);
-    qsort(keys, count, sizeof *keys, by_corners);
-    for (size_t i = 0, n; i < count; i += n) {
-        int net = 0;
-        for (n = 0; i + n < count && memcmp(keys[i].corner, keys[i + n].corner, sizeof keys[i].corner) == 0; n++) {
-            net += keys[i + n].odd == keys[i].odd ? 1 : -1;
-            drop[keys[i + n].triangle] = n > 0;
-        }
-        uint32_t *v = mesh->triangles + 3 * (size_t)keys[i].triangle, corner = v[0];
-        drop[keys[i].triangle] = net == 0;
-        layers[keys[i].triangle] = abs(net);
-        if (net < 0) {
-            v[0] = v[1];
-            v[1] = corner;
-        }
-    }
-    size_t kept = 0;
-    for (size_t t = 0; t < count; t++)
-        if (!drop[t])
-            layers[kept++] = layers[t];
-    dem_mesh_drop(mesh, drop);
-    free(keys);
-    free(drop);
-    return true;
-}
+static const double MOST_TANGLE = 5e5;  // some 10 s; a few dozen overlapping shells of thousands of triangles have less
 
 typedef struct ray {
     const int *layers;
@@ -190,7 +124,7 @@ static dem_status outline(dem_mesh *mesh, bool *changed, dem_error *error)
     int *layers = dem_alloc(mesh->triangle_count, sizeof *layers);
     dem_status status = DEM_OK;
     size_t count = mesh->triangle_count;
-    if (!layers || !merge_layers(mesh, layers)) {
+    if (!layers || !dem_mesh_merge_layers(mesh, layers)) {
         status = dem_fail_memory(error);
         goto done;
     }
@@ -208,11 +142,33 @@ done:
     return status;
 }
 
+// pairs, each counted as often as the less cut of its two triangles is cut: the lines that may cross on one triangle
+static dem_status measure_tangle(const dem_mesh *mesh, const dem_crossings *crossings, double *tangle, dem_error *error)
+{
+    uint32_t *cuts = dem_alloc_zero(mesh->triangle_count, sizeof *cuts);
+    if (!cuts)
+        return dem_fail_memory(error);
+    for (size_t i = 0; i < crossings->count; i++)
+        for (int k = 0; k < 2; k++)
+            cuts[crossings->pairs[i][k]]++;
+    *tangle = 0;
+    for (size_t i = 0; i < crossings->count; i++) {
+        uint32_t a = cuts[crossings->pairs[i][0]], b = cuts[crossings->pairs[i][1]];
+        *tangle += a < b ? a : b;
+    }
+    free(cuts);
+    return DEM_OK;
+}
+
 dem_status dem_mesh_unite(dem_mesh *mesh, const dem_crossings *crossings, bool *changed, dem_error *error)
 {
     *changed = false;
     dem_mesh pieces;
     size_t unused;
+    double tangle = 0;
+    DEM_TRY(measure_tangle(mesh, crossings, &tangle, error));
+    if (tangle > MOST_TANGLE)
+        return dem_fail(error, DEM_FAILED, "too tangled to take apart; use --repair wrap");
     DEM_TRY(dem_mesh_refine(mesh, (const uint32_t(*)[2])crossings->pairs, crossings->count, &pieces, error));
     pieces.single_precision = mesh->single_precision;
     dem_status status = dem_mesh_weld_equal(&pieces, &unused, error);

@@ -266,3 +266,70 @@ size_t dem_mesh_drop_collapsed(dem_mesh *mesh)
     mesh->triangle_count = kept;
     return count - kept;
 }
+
+typedef struct triangle_key {
+    uint32_t corner[3];  // ascending
+    uint32_t triangle;
+    bool odd;            // an odd number of exchanges sorts the corners
+} triangle_key;
+
+static triangle_key key_of(const dem_mesh *mesh, uint32_t triangle)
+{
+    const uint32_t *v = mesh->triangles + 3 * (size_t)triangle;
+    triangle_key key = {{v[0], v[1], v[2]}, triangle, false};
+    for (int pass = 0; pass < 2; pass++)
+        for (int k = 0; k < 2; k++)
+            if (key.corner[k] > key.corner[k + 1]) {
+                uint32_t swap = key.corner[k];
+                key.corner[k] = key.corner[k + 1];
+                key.corner[k + 1] = swap;
+                key.odd = !key.odd;
+            }
+    return key;
+}
+
+static int by_corners(const void *pa, const void *pb)
+{
+    const triangle_key *a = pa, *b = pb;
+    for (int k = 0; k < 3; k++)
+        if (a->corner[k] != b->corner[k])
+            return a->corner[k] < b->corner[k] ? -1 : 1;
+    return (a->triangle > b->triangle) - (a->triangle < b->triangle);
+}
+
+bool dem_mesh_merge_layers(dem_mesh *mesh, int *layers)
+{
+    size_t count = mesh->triangle_count;
+    triangle_key *keys = dem_alloc(count, sizeof *keys);
+    unsigned char *drop = dem_alloc_zero(count, 1);
+    if (!keys || !drop) {
+        free(keys);
+        free(drop);
+        return false;
+    }
+    for (uint32_t t = 0; t < count; t++)
+        keys[t] = key_of(mesh, t);
+    qsort(keys, count, sizeof *keys, by_corners);
+    for (size_t i = 0, n; i < count; i += n) {
+        int net = 0;
+        for (n = 0; i + n < count && memcmp(keys[i].corner, keys[i + n].corner, sizeof keys[i].corner) == 0; n++) {
+            net += keys[i + n].odd == keys[i].odd ? 1 : -1;
+            drop[keys[i + n].triangle] = n > 0;
+        }
+        uint32_t *v = mesh->triangles + 3 * (size_t)keys[i].triangle, corner = v[0];
+        drop[keys[i].triangle] = net == 0;
+        layers[keys[i].triangle] = abs(net);
+        if (net < 0) {
+            v[0] = v[1];
+            v[1] = corner;
+        }
+    }
+    size_t kept = 0;
+    for (size_t t = 0; t < count; t++)
+        if (!drop[t])
+            layers[kept++] = layers[t];
+    dem_mesh_drop(mesh, drop);
+    free(keys);
+    free(drop);
+    return true;
+}

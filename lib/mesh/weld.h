@@ -23,4 +23,8 @@ void dem_mesh_drop(dem_mesh *mesh, const unsigned char *drop);
 /// Removes triangles that name a vertex twice. Returns how many.
 size_t dem_mesh_drop_collapsed(dem_mesh *mesh);
 
+/// Triangles in the same place become one, turned the way most of them lie and counted in `layers`
+/// [triangle_count] by how many more that are; none where they cancel. False: no memory.
+bool dem_mesh_merge_layers(dem_mesh *mesh, int *layers);
+
 #endif

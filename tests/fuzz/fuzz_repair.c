@@ -16,7 +16,7 @@ typedef struct bytes {
     size_t left;
 } bytes;
 
-static unsigned next(bytes *b)
+static unsigned next_byte(bytes *b)
 {
     if (b->left == 0)
         return 0;
@@ -26,11 +26,11 @@ static unsigned next(bytes *b)
 
 static void soup(bytes *b, dem_mesh *mesh)
 {
-    double step = ldexp(1, (int)next(b) % 40 - 20);
-    unsigned lattice = 2 + next(b) % 8;
+    double step = ldexp(1, (int)next_byte(b) % 40 - 20);
+    unsigned lattice = 2 + next_byte(b) % 8;
     while (b->left >= 3 && mesh->vertex_count + 3 <= MOST) {
         dem_vec3 *p = &mesh->vertices[mesh->vertex_count++];
-        unsigned x = next(b), y = next(b), z = next(b);
+        unsigned x = next_byte(b), y = next_byte(b), z = next_byte(b);
         p->x = (x % lattice) * step + (x >= 250 ? 1e-7 * step : 0);
         p->y = (y % lattice) * step;
         p->z = (z % lattice) * step;
@@ -69,10 +69,10 @@ static void sphere(dem_mesh *mesh)
 static void damage(bytes *b, dem_mesh *mesh)
 {
     while (b->left >= 3 && mesh->triangle_count > 1 && mesh->triangle_count < MOST) {
-        unsigned what = next(b);
-        size_t at = (next(b) + 256 * next(b)) % mesh->triangle_count;
+        unsigned what = next_byte(b);
+        size_t at = (next_byte(b) + 256 * next_byte(b)) % mesh->triangle_count;
         uint32_t *t = mesh->triangles + 3 * at, *last = mesh->triangles + 3 * (mesh->triangle_count - 1);
-        double amount = ldexp(next(b) / 128.0 - 1, -(int)(what / 32) * 3);
+        double amount = ldexp(next_byte(b) / 128.0 - 1, -(int)(what / 32) * 3);
         switch (what % 8) {
         case 0:
             memmove(t, last, 3 * sizeof *t);
@@ -92,10 +92,10 @@ static void damage(bytes *b, dem_mesh *mesh)
             mesh->vertices[t[1]].z += amount;
             break;
         case 5:
-            t[next(b) % 3] = next(b) % (uint32_t)mesh->vertex_count;
+            t[next_byte(b) % 3] = next_byte(b) % (uint32_t)mesh->vertex_count;
             break;
         case 6:
-            mesh->vertices[t[2]] = mesh->vertices[next(b) % mesh->vertex_count];
+            mesh->vertices[t[2]] = mesh->vertices[next_byte(b) % mesh->vertex_count];
             break;
         default:
             if (mesh->triangle_count + 100 < MOST && mesh->vertex_count + 100 < MOST) {
@@ -116,7 +116,7 @@ static void require(int condition)
         abort();
 }
 
-static void check(const dem_mesh *mesh, const dem_mesh_report *report)
+static void check_solid(const dem_mesh *mesh, const dem_mesh_report *report)
 {
     uint64_t sum = 0;
     for (size_t i = 0; i < 3 * mesh->triangle_count; i++) {
@@ -137,7 +137,7 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
 {
     bytes b = {data, size};
     dem_mesh mesh = {.vertices = malloc((MOST + 8) * sizeof(dem_vec3)), .triangles = malloc(3 * (MOST + 8) * sizeof(uint32_t))};
-    unsigned how = next(&b);
+    unsigned how = next_byte(&b);
     if (how % 2) {
         soup(&b, &mesh);
     } else {
@@ -149,12 +149,12 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
     dem_mesh_report report;
     dem_error error;
     if (dem_mesh_repair(NULL, &mesh, &options, &report, &error) == DEM_OK && options.repair != DEM_REPAIR_NONE) {
-        check(&mesh, &report);
+        check_solid(&mesh, &report);
         // what was repaired is fine as it is
         double volume = report.volume;
         options.keep = DEM_KEEP_ALL;
         require(dem_mesh_repair(NULL, &mesh, &options, &report, &error) == DEM_OK);
-        check(&mesh, &report);
+        check_solid(&mesh, &report);
         require(fabs(report.volume - volume) <= 1e-6 * volume);
         dem_mesh *bodies;
         size_t count;
