@@ -72,27 +72,28 @@ double dem_pack_springs(dem_packing *p, const dem_pack_state *state, double (*eq
     return energy;
 }
 
-// both balls of a link move towards each other and grow until they overlap; the smaller one does more
-static void close_link(dem_pack_state *state, const dem_link *link)
+// Both balls of a link move towards each other, and grow by the share `growth` of the gap; the smaller one does more.
+static void close_link(dem_pack_state *state, const dem_link *link, double growth)
 {
     dem_ball *a = &state->balls[link->i], *b = &state->balls[link->j];
     dem_vec3 d = v3_unit(v3_sub(b->centre, a->centre));
-    double gap = link->gap, share = b->radius / (a->radius + b->radius);
-    a->centre = v3_along(a->centre, gap * share / 2, d);
-    b->centre = v3_along(b->centre, -gap * (1 - share) / 2, d);
-    a->radius += gap * share / 2;
-    b->radius += gap * (1 - share) / 2;
+    double share = b->radius / (a->radius + b->radius), way = link->gap * (1 - growth), swell = link->gap * growth;
+    a->centre = v3_along(a->centre, way * share, d);
+    b->centre = v3_along(b->centre, -way * (1 - share), d);
+    a->radius += swell * share;
+    b->radius += swell * (1 - share);
 }
 
-bool dem_pack_close(dem_packing *p, dem_pack_state *state)
+bool dem_pack_close(dem_packing *p, dem_pack_state *state, double growth)
 {
     enum { ROUNDS = 20 };
+    const double wanted = (dem_pack_overlap + dem_pack_spring_overlap) / 2;
     if (!p->connected || !dem_pack_links(p, state->balls, state->count, dem_pack_overlap, p->links))
         return false;
     for (int i = 0; i < ROUNDS; i++) {
-        size_t open = dem_pack_links(p, state->balls, state->count, (dem_pack_overlap + dem_pack_spring_overlap) / 2, p->links);
+        size_t open = dem_pack_links(p, state->balls, state->count, wanted, p->links);
         for (size_t k = 0; k < open; k++)
-            close_link(state, &p->links[k]);
+            close_link(state, &p->links[k], growth);
         if (!open)
             break;
     }
@@ -111,6 +112,6 @@ dem_status dem_pack_join(dem_packing *p, dem_pack_state *state, dem_error *error
         p->stiffness *= 2;
     }
     p->stiffness = stiffness;
-    dem_pack_close(p, state);
+    dem_pack_close(p, state, 0.5);
     return DEM_OK;
 }

@@ -17,7 +17,8 @@ size_t dem_pack_links(dem_packing *p, const dem_ball *balls, size_t count, doubl
 double dem_pack_springs(dem_packing *p, const dem_pack_state *state, double (*equations)[DEM_EQUATION]);
 /// Relaxes with springs, then dem_pack_close.
 dem_status dem_pack_join(dem_packing *p, dem_pack_state *state, dem_error *error);
-/// Moves and grows the balls on open links until there is one piece. False: there was nothing to do.
-bool dem_pack_close(dem_packing *p, dem_pack_state *state);
+/// Moves the balls on open links together, and grows them by the share `growth` of the gaps, until there is one piece.
+/// False: there was nothing to do.
+bool dem_pack_close(dem_packing *p, dem_pack_state *state, double growth);
 
 #endif

@@ -65,11 +65,11 @@ static void cover_piece(cover *c, const dem_vec3 t[3], const uint32_t *from, siz
         cover_piece(c, parts[k], near, near_count, depth + 1);
 }
 
-static dem_status cover_surface(dem_packing *p, cover *c, const dem_tree *tree, const uint32_t *all, dem_error *error)
+static dem_status cover_surface(dem_packing *p, cover *c, const uint32_t *all, dem_error *error)
 {
-    for (size_t t = 0; t < tree->count; t++) {
-        const uint32_t *id = tree->triangles + 3 * t;
-        dem_vec3 corners[3] = {tree->vertices[id[0]], tree->vertices[id[1]], tree->vertices[id[2]]};
+    for (size_t t = 0; t < p->grain->mesh->triangle_count; t++) {
+        dem_vec3 corners[3];
+        dem_pack_grain_corners(p->grain, t, corners);
         if (t % TRIANGLES_PER_REPORT == 0)
             DEM_TRY(dem_pack_go_on(p, error));
         cover_piece(c, corners, all, c->count, 0);
@@ -89,7 +89,7 @@ static dem_status cover_inside(const dem_packing *p, cover *c, dem_error *error)
     return DEM_OK;
 }
 
-dem_status dem_pack_cover(dem_packing *p, const dem_tree *tree, dem_pack_state *state, dem_error *error)
+dem_status dem_pack_cover(dem_packing *p, dem_pack_state *state, dem_error *error)
 {
     cover c = {.balls = state->balls, .count = state->count};
     c.lists = dem_alloc((DEEPEST + 2) * state->count, sizeof *c.lists);
@@ -98,7 +98,7 @@ dem_status dem_pack_cover(dem_packing *p, const dem_tree *tree, dem_pack_state *
     uint32_t *all = c.lists + (DEEPEST + 1) * state->count;
     for (uint32_t i = 0; i < state->count; i++)
         all[i] = i;
-    dem_status status = cover_surface(p, &c, tree, all, error);
+    dem_status status = cover_surface(p, &c, all, error);
     if (status == DEM_OK)
         status = cover_inside(p, &c, error);
     free(c.lists);

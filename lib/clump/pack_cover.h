@@ -4,8 +4,8 @@
 
 #include "clump/packing.h"
 
-/// Raises radii, each time the one that needs it least, until every triangle of `tree`, to its last point, and every
+/// Raises radii, each time the one that needs it least, until every triangle of the mesh, to its last point, and every
 /// inside point of the lattice lie in the union.
-dem_status dem_pack_cover(dem_packing *p, const dem_tree *tree, dem_pack_state *state, dem_error *error);
+dem_status dem_pack_cover(dem_packing *p, dem_pack_state *state, dem_error *error);
 
 #endif

@@ -432,6 +432,7 @@ static void add_sums(const strip_place *place, const strip_front *front, const s
     const dem_line_field *field = place->task->field;
     const float *axes[3] = {place->balls->x, place->balls->y, place->balls->z};
     const float *u = axes[(field->axis + 1) % 3], *v = axes[(field->axis + 2) % 3], *w = axes[field->axis];
+    float outside = place->task->protruding, inside = -place->task->uncovered;
     float sums[4][DEM_LINE_LANES];
     uint32_t ball[DEM_LINE_LANES];
     for (int l = 0; l < DEM_LINE_LANES; l++)
@@ -439,7 +440,7 @@ static void add_sums(const strip_place *place, const strip_front *front, const s
     for (int l = 0; l < DEM_LINE_LANES; l++) {
         uint32_t i = ball[l];
         float across = place->x + (float)l * field->step - u[i], along = front->at[l] - w[i];
-        float s = front->at[l] < nowhere ? (1 - 2 * against->inside[l]) * fabsf(along) : 0;
+        float s = front->at[l] < nowhere ? (against->inside[l] > 0 ? inside : outside) * fabsf(along) : 0;
         sums[0][l] = s * across;
         sums[1][l] = s * (place->y - v[i]);
         sums[2][l] = s * (front->at[l] < nowhere ? along : 0);

@@ -49,8 +49,9 @@ typedef struct dem_line_task {
     uint32_t *start;         ///< [strips + 1] of the balls that a strip meets, in `list`
     uint32_t *list;          ///< of each strip by coordinate along the lines
     size_t list_capacity;
-    /// [balls] sums over the exposed ends of their intervals, with s = +1 for an end outside the grain, -1 inside, n the
-    /// unit normal of the ball and w the direction of the lines: s |n_w| r (n_u r, n_v r, +-n_w r, 1)
+    float uncovered, protruding;   ///< weights of what the union lacks and of what it has too much
+    /// [balls] sums over the exposed ends of their intervals, with s = `protruding` for an end outside the grain and
+    /// -`uncovered` for one inside, n the unit normal of the ball, w along the lines: s |n_w| r (n_u r, n_v r, n_w r, 1)
     float (*sums)[4];
     float (*from)[DEM_LINE_LANES], (*to)[DEM_LINE_LANES];  ///< [balls] work space: the ends of their intervals
     double covered, common;  ///< length of the lines inside the union, and inside both

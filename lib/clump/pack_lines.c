@@ -115,7 +115,8 @@ static dem_status take_work_space(dem_lines *lines, dem_error *error)
 dem_status dem_lines_build(const dem_pack_grain *grain, const dem_pack_kernels *kernels, double step,
                            const double offsets[2], size_t capacity, int threads, dem_lines *lines, dem_error *error)
 {
-    *lines = (dem_lines){.kernels = kernels, .capacity = capacity, .threads = threads};
+    *lines = (dem_lines){.kernels = kernels, .capacity = capacity, .threads = threads,
+                         .uncovered = 1, .protruding = 1};
     dem_status status = DEM_OK;
     for (int axis = 0; axis < 3 && status == DEM_OK; axis++) {
         dem_columns columns;
@@ -238,6 +239,8 @@ static void run_task(const dem_lines *lines, const dem_ball_columns *balls, dem_
 {
     if (gradient)
         memset(task->sums, 0, balls->count * sizeof *task->sums);
+    task->uncovered = (float)lines->uncovered;
+    task->protruding = (float)lines->protruding;
     task->failed = !list_strips(balls, lines->order[task->field->axis], task);
     if (!task->failed)
         lines->kernels->lines(balls, task, gradient);
@@ -264,7 +267,8 @@ dem_status dem_lines_measure(dem_lines *lines, const dem_ball_columns *balls, do
     }
     double cell = (double)lines->fields[0].step * (double)lines->fields[0].step / 3;
     *volumes = (dem_line_volumes){.grain = cell * grain, .covered = cell * covered, .common = cell * common,
-                                  .difference = cell * (grain + covered - 2 * common),
+                                  .difference = cell * (lines->uncovered * (grain - common) +
+                                                        lines->protruding * (covered - common)),
                                   .gap = 1 - common / (grain + covered - common)};
     return DEM_OK;
 }

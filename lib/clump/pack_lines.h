@@ -20,12 +20,13 @@ typedef struct dem_lines {
     size_t order_count;
     const dem_pack_kernels *kernels;
     size_t capacity;             ///< most balls
+    double uncovered, protruding;  ///< weights of the two parts of the difference; 1 unless set otherwise
     int threads;
 } dem_lines;
 
 typedef struct dem_line_volumes {
     double grain, covered, common;   ///< volumes as the lines see them
-    double difference;               ///< symmetric difference
+    double difference;               ///< symmetric difference, its parts weighted
     double gap;                      ///< 1 - intersection / union
 } dem_line_volumes;
 

@@ -1,5 +1,7 @@
 // Gauss-Newton on f(q) = min_i (|q - c_i| - r_i). Each sample belongs to one ball, so the normal equations fall apart
 // into one 4x4 system per ball; |f|^p is minimised as reweighted squares, damped as by Levenberg.
+#include <string.h>
+
 #include "base/status.h"
 #include "clump/pack_connect.h"
 #include "clump/packing.h"
@@ -121,14 +123,13 @@ static bool solve(const double equation[DEM_EQUATION], double damping, double st
     return true;
 }
 
-// a ball whose step leads where no ball may be stays
-static void move_balls(dem_packing *p, const dem_pack_state *from, dem_pack_state *to, double damping)
+// A ball whose step leads where no ball may be stays. What is learnt of the clearances holds for both states.
+static void move_balls(dem_packing *p, dem_pack_state *from, dem_pack_state *to, double damping)
 {
     to->count = from->count;
     for (size_t i = 0; i < from->count; i++) {
         double step[4];
         to->balls[i] = from->balls[i];
-        to->clearances[i] = from->clearances[i];
         if (!solve(p->equations[i], damping, step))
             continue;
         double largest = 0;
@@ -140,11 +141,10 @@ static void move_balls(dem_packing *p, const dem_pack_state *from, dem_pack_stat
         dem_ball moved = from->balls[i];
         moved.centre = v3_along(moved.centre, scale, v3(step[0], step[1], step[2]));
         moved.radius = fmax(moved.radius + scale * step[3], dem_pack_smallest_radius);
-        if (p->fit)
-            p->fit(p, &moved, &to->clearances[i]);
-        if (dem_pack_ball_allowed(p, moved, &to->clearances[i]))
+        if (dem_pack_ball_allowed(p, moved, &from->clearances[i]))
             to->balls[i] = moved;
     }
+    memcpy(to->clearances, from->clearances, from->count * sizeof *to->clearances);
 }
 
 static void swap_states(dem_pack_state *a, dem_pack_state *b)

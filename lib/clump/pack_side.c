@@ -10,11 +10,12 @@
 #include "base/status.h"
 #include "clump/pack_connect.h"
 #include "clump/pack_cover.h"
+#include "geom/ball_tree.h"
 #include "geom/union.h"
 
-enum { STEPS = 120 };
+enum { STEPS = 120, TRIANGLES_PER_REPORT = 4096 };
 
-static const double dear_protrusion = 30, dear_uncovered = 10;                     // against the other side [-]
+static const double dear_protrusion[] = {30, 300}, dear_uncovered = 10;            // against the other side [-]
 static const double first_step = 0.004, longest_step = 0.02, shortest_step = 1e-5; // [d_eq]
 static const double lengthen = 1.15, shorten = 0.5;
 static const double rounding = 1e-9; // kept from the surface [d_eq]
@@ -23,7 +24,7 @@ typedef struct side_run {
     dem_packing *p;
     dem_lines *lines;
     dem_pack_state *state;
-    const dem_tree *tree; // of the mesh as given, in the packer's frame
+    const dem_tree *tree; // of the grain's shell: the mesh, or a coarser stand-in for a large one
     bool outer;
     dem_vec3 *hangs_on; // [capacity] q
     dem_vec3 *last;     // [capacity] direction of the last step
@@ -35,7 +36,7 @@ typedef struct side_run {
 void dem_pack_side_begin(dem_packing *p)
 {
     if (p->options->side == DEM_SIDE_INSCRIBED) {
-        p->charge.inside = (float)dear_protrusion;
+        p->charge.inside = (float)dear_protrusion[0];
         p->inflation_count = 1;
     } else if (p->options->side == DEM_SIDE_OUTER) {
         p->charge.outside = (float)dear_uncovered;
@@ -253,7 +254,41 @@ static dem_status refill(side_run *s, size_t wanted, dem_error *error)
     return DEM_OK;
 }
 
-static dem_status keep_inscribed(side_run *s, dem_error *error)
+// A stand-in is not exact: every triangle of the mesh against the balls it is near to. No copy of the mesh is made.
+static dem_status shrink_to_mesh(side_run *s, dem_error *error)
+{
+    const dem_pack_grain *grain = s->p->grain;
+    dem_ball *balls = s->state->balls, *before = s->p->moved.balls;
+    size_t count = s->state->count;
+    uint32_t *near = s->p->order;
+    dem_ball_tree tree;
+    memcpy(before, balls, count * sizeof *before);
+    DEM_TRY(dem_ball_tree_build(&tree, before, count, error));
+    dem_status status = DEM_OK;
+    for (size_t t = 0; t < grain->mesh->triangle_count && status == DEM_OK; t++) {
+        dem_vec3 c[3];
+        if (t % TRIANGLES_PER_REPORT == 0)
+            status = dem_pack_go_on(s->p, error);
+        dem_pack_grain_corners(grain, t, c);
+        dem_vec3 middle = v3_scale(v3_add(c[0], v3_add(c[1], c[2])), 1.0 / 3);
+        double reach = fmax(v3_distance(middle, c[0]), fmax(v3_distance(middle, c[1]), v3_distance(middle, c[2])));
+        size_t found = dem_ball_tree_near(&tree, (dem_ball){middle, reach}, rounding, near);
+        for (size_t k = 0; k < found; k++) {
+            dem_ball *ball = &balls[near[k]];
+            double d = v3_distance(dem_triangle_closest(ball->centre, c[0], c[1], c[2]), ball->centre);
+            ball->radius = fmin(ball->radius, d - rounding);
+        }
+    }
+    dem_ball_tree_release(&tree);
+    size_t kept = 0;
+    for (size_t i = 0; i < count; i++)
+        if (balls[i].radius > dem_pack_smallest_radius)
+            balls[kept++] = balls[i];
+    s->state->count = kept;
+    return status;
+}
+
+static dem_status inscribe_and_join(side_run *s, dem_error *error)
 {
     size_t wanted = s->state->count, dropped;
     inscribe_all(s);
@@ -268,10 +303,20 @@ static dem_status keep_inscribed(side_run *s, dem_error *error)
     return keep_largest_piece(s, &dropped, error);
 }
 
+static dem_status keep_inscribed(side_run *s, dem_error *error)
+{
+    size_t dropped;
+    DEM_TRY(inscribe_and_join(s, error));
+    if (s->p->grain->shell.triangle_count == s->p->grain->mesh->triangle_count)
+        return DEM_OK;
+    DEM_TRY(shrink_to_mesh(s, error));
+    return keep_largest_piece(s, &dropped, error);
+}
+
 static dem_status keep_outer(side_run *s, dem_error *error)
 {
     DEM_TRY(descend(s, error));
-    return dem_pack_cover(s->p, s->tree, s->state, error);
+    return dem_pack_cover(s->p, s->state, error);
 }
 
 static dem_status take_work_space(side_run *s, dem_error *error)
@@ -285,42 +330,34 @@ static dem_status take_work_space(side_run *s, dem_error *error)
     return arena->failed ? dem_fail_memory(error) : DEM_OK;
 }
 
-// the mesh as given in the packer's frame, where the grain's tree stands on a coarser one
-static dem_status build_exact_tree(const dem_pack_grain *grain, dem_vec3 **vertices, dem_tree *tree, dem_error *error)
+// protrusion is charged so dearly that hardly any is left before the balls shrink to what fits
+static dem_status fit_inside(dem_pack_stages *run, dem_error *error)
 {
-    const dem_mesh *mesh = grain->mesh;
-    *vertices = dem_alloc(mesh->vertex_count, sizeof **vertices);
-    if (!*vertices)
-        return dem_fail_memory(error);
-    for (size_t i = 0; i < mesh->vertex_count; i++)
-        (*vertices)[i] = dem_pack_grain_enter(grain, mesh->vertices[i]);
-    return dem_tree_build(tree, *vertices, mesh->triangles, mesh->triangle_count, error);
+    for (size_t k = 0; k < sizeof dear_protrusion / sizeof *dear_protrusion; k++) {
+        run->p.charge.inside = (float)dear_protrusion[k];
+        run->lines.protruding = dear_protrusion[k];
+        DEM_TRY(dem_pack_fit(run, error));
+    }
+    run->lines.protruding = 1;
+    return DEM_OK;
 }
 
 dem_status dem_pack_side_keep(dem_pack_stages *run, dem_error *error)
 {
     dem_packing *p = &run->p;
-    const dem_pack_grain *grain = p->grain;
-    dem_vec3 *vertices = NULL;
-    dem_tree exact = {0};
     side_run s = {.p = p,
                   .lines = &run->lines,
                   .state = &run->state,
-                  .tree = &grain->tree,
+                  .tree = &p->grain->tree,
                   .outer = p->options->side == DEM_SIDE_OUTER};
     p->charge.linear = true;
     DEM_TRY(take_work_space(&s, error));
-    DEM_TRY(dem_pack_resize(run, run->state.count, error));
-    dem_status status = DEM_OK;
-    if (grain->tree.count != grain->mesh->triangle_count) {
-        status = build_exact_tree(grain, &vertices, &exact, error);
-        s.tree = &exact;
-    }
+    if (s.outer)
+        DEM_TRY(dem_pack_resize(run, run->state.count, error));
+    else
+        DEM_TRY(fit_inside(run, error));
     dem_pack_stage(p, 0.98);
-    if (status == DEM_OK)
-        status = s.outer ? keep_outer(&s, error) : keep_inscribed(&s, error);
-    dem_tree_release(&exact);
-    free(vertices);
+    DEM_TRY(s.outer ? keep_outer(&s, error) : keep_inscribed(&s, error));
     p->connected = false; // nothing may move any more
-    return status;
+    return DEM_OK;
 }

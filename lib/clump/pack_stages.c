@@ -235,11 +235,11 @@ static dem_status rejoin(dem_pack_stages *run, dem_error *error)
     size_t kept = moments_of(run->met);
     for (int k = 0; k < REJOINS; k++) {
         bool met;
-        if (!dem_pack_close(&run->p, &run->state) || !kept)
+        if (!dem_pack_close(&run->p, &run->state, kept ? 0 : 0.5) || !kept)
             return DEM_OK;
         DEM_TRY(dem_pack_project(&run->p, &run->state, kept, &run->rows, &run->spare_rows, &met, error));
     }
-    dem_pack_close(&run->p, &run->state);
+    dem_pack_close(&run->p, &run->state, 1);
     return DEM_OK;
 }
 

@@ -49,23 +49,33 @@ void dem_pack_state_remove(dem_pack_state *state, const bool *gone)
     state->count = kept;
 }
 
-// the ball is allowed if its centre is inside and nowhere nearer to the surface than `distance`
-static bool surely_allowed(dem_ball ball, double distance)
+// what the clearance known for a place not far away says about a ball
+typedef enum verdict { REFUSED, ALLOWED, OPEN } verdict;
+
+static verdict judge(dem_ball ball, const dem_clearance *known)
 {
-    return distance > 0 && ball.radius <= largest_ratio * distance + ratio_free;
+    if (known->distance < 0)
+        return OPEN;
+    double moved = v3_distance(ball.centre, known->at);
+    double least = known->distance - moved, most = known->distance + moved;
+    if (ball.radius > largest_ratio * most + ratio_free || (!known->inside && least > farthest_outside))
+        return REFUSED;
+    bool centre_good = (known->inside && least >= 0) || most <= farthest_outside;
+    return centre_good && ball.radius <= largest_ratio * fmax(least, 0) + ratio_free ? ALLOWED : OPEN;
 }
 
 bool dem_pack_ball_allowed(const dem_packing *p, dem_ball ball, dem_clearance *clearance)
 {
     if (!(ball.radius >= dem_pack_smallest_radius && ball.radius <= largest_radius))
         return false;
-    double moved = clearance->distance >= 0 ? v3_distance(ball.centre, clearance->at) : INFINITY;
-    if (clearance->distance >= 0 && clearance->inside && surely_allowed(ball, clearance->distance - moved))
-        return true;
-    double limit = clearance->distance >= 0 ? (clearance->distance + moved) * (1 + 1e-9) + 1e-9 : INFINITY;
+    verdict first = judge(ball, clearance);
+    if (first != OPEN)
+        return first == ALLOWED;
+    double known = clearance->distance, limit = INFINITY;
+    if (known >= 0)
+        limit = (known + v3_distance(ball.centre, clearance->at)) * (1 + 1e-9) + 1e-9;
     clearance->distance = dem_tree_closest(&p->grain->tree, ball.centre, limit, NULL, NULL);
     clearance->at = ball.centre;
     clearance->inside = dem_tree_inside(&p->grain->tree, ball.centre);
-    return ball.radius <= largest_ratio * clearance->distance + ratio_free &&
-           (clearance->inside || clearance->distance <= farthest_outside);
+    return judge(ball, clearance) == ALLOWED;
 }

@@ -75,8 +75,6 @@ typedef struct dem_packing {
     bool spring;                 ///< pull separate pieces together
     double stiffness;            ///< of the springs
     bool connected;              ///< refuse what takes the clump apart
-    /// What a step does to a ball besides moving it; NULL: nothing.
-    void (*fit)(const struct dem_packing *p, dem_ball *ball, dem_clearance *clearance);
     dem_arena arena;
     size_t capacity;             ///< most balls of a state
     dem_ball_columns columns;    ///< the balls of the state being evaluated
