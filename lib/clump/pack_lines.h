@@ -11,6 +11,7 @@ typedef struct dem_placed_ball {
     uint32_t ball;
 } dem_placed_ball;
 
+/// Its tasks point into it: not to be copied.
 typedef struct dem_lines {
     dem_line_field fields[3];
     double grain_length[3];      ///< of the lines inside the grain

@@ -1,0 +1,164 @@
+#include "check.h"
+#include "shapes.h"
+
+#include "base/random.h"
+#include "clump/pack_lines.h"
+#include "clump/packing.h"
+#include "geom/union.h"
+
+enum { BALLS = 24 };
+
+typedef struct fixture {
+    dem_mesh mesh;
+    dem_pack_grain grain;
+    dem_ball balls[BALLS];
+    float columns[4][32];
+    dem_ball_columns view;
+} fixture;
+
+static void show(fixture *f)
+{
+    f->view = (dem_ball_columns){.x = f->columns[0], .y = f->columns[1], .z = f->columns[2], .r = f->columns[3]};
+    dem_ball_columns_set(&f->view, f->balls, BALLS);
+}
+
+static void open_fixture(fixture *f)
+{
+    f->mesh = shape_box(2, 1.4, 1);
+    dem_error error;
+    dem_random r = random_stream(11, 0);
+    check_ok(dem_pack_grain_open(&f->mesh, &f->grain, &error), error);
+    for (int i = 0; i < BALLS; i++) {
+        double x = random_uniform(&r) - 0.5, y = random_uniform(&r) - 0.5, z = random_uniform(&r) - 0.5;
+        f->balls[i] = (dem_ball){v3_scale(v3(x, y, z), 0.7), 0.08 + 0.12 * random_uniform(&r)};
+    }
+}
+
+static void close_fixture(fixture *f)
+{
+    dem_pack_grain_close(&f->grain);
+    dem_mesh_free(&f->mesh);
+}
+
+static void build(const fixture *f, const dem_pack_kernels *kernels, double step, int threads, dem_lines *lines)
+{
+    dem_error error;
+    check_ok(dem_lines_build(&f->grain, kernels, step, (const double[2]){0.38197, 0.2764}, BALLS, threads, lines, &error),
+             error);
+}
+
+static dem_line_volumes measure(fixture *f, dem_lines *lines, double (*gradient)[4])
+{
+    dem_line_volumes volumes;
+    dem_error error;
+    show(f);
+    check_ok(dem_lines_measure(lines, &f->view, gradient, &volumes, &error), error);
+    return volumes;
+}
+
+static void volumes_by_lines_are_the_exact_ones(void **state)
+{
+    (void)state;
+    fixture f;
+    open_fixture(&f);
+    dem_lines lines;
+    build(&f, dem_pack_kernels_choose(NULL), 0.005, 1, &lines);
+    dem_line_volumes v = measure(&f, &lines, NULL);
+    dem_ball_union exact;
+    dem_error error;
+    check_ok(dem_ball_union_compute(f.balls, BALLS, false, &exact, &error), error);
+    check_close(v.grain, f.grain.moments.volume, 1e-4);    // lines 1/200 of d_eq apart
+    check_close(v.covered, exact.moments.volume, 1e-4);
+    check_near(v.difference, v.grain + v.covered - 2 * v.common, 1e-12);
+    check_near(v.gap, 1 - v.common / (v.grain + v.covered - v.common), 1e-12);
+    // the common volume by another count: points of a lattice
+    dem_random r = random_stream(5, 0);
+    int common = 0, points = 40000;
+    for (int k = 0; k < points; k++) {
+        double x = random_uniform(&r) - 0.5, y = random_uniform(&r) - 0.5, z = random_uniform(&r) - 0.5;
+        dem_vec3 p = v3_scale(v3(x, y, z), 2);
+        bool covered = false;
+        for (int i = 0; i < BALLS && !covered; i++)
+            covered = v3_distance(p, f.balls[i].centre) < f.balls[i].radius;
+        common += covered && dem_tree_inside(&f.grain.tree, p);
+    }
+    check_close(8.0 * common / points, v.common, 0.06);    // 3 sigma of some 2000 hits
+    dem_ball_union_release(&exact);
+    dem_lines_release(&lines);
+    close_fixture(&f);
+}
+
+// the flux is not the derivative of the discrete sum, but comes to it on average over the places of the lines
+static void the_gradient_is_that_of_finite_differences(void **state)
+{
+    (void)state;
+    fixture f;
+    open_fixture(&f);
+    dem_lines lines;
+    build(&f, dem_pack_kernels_choose(NULL), 0.004, 1, &lines);
+    double gradient[BALLS][4], error2 = 0, size2 = 0;
+    for (int weighted = 0; weighted < 2; weighted++) {
+        lines.protruding = weighted ? 7 : 1;
+        measure(&f, &lines, gradient);
+        for (int i = 0; i < BALLS; i++)
+            for (int k = 0; k < 4; k++) {
+                const double step = 4e-3;
+                dem_ball ball = f.balls[i];
+                double value[2];
+                for (int side = 0; side < 2; side++) {
+                    dem_ball moved = ball;
+                    if (k < 3)
+                        v3_set(&moved.centre, k, v3_get(ball.centre, k) + (side ? step : -step));
+                    else
+                        moved.radius += side ? step : -step;
+                    f.balls[i] = moved;
+                    value[side] = measure(&f, &lines, NULL).difference;
+                }
+                f.balls[i] = ball;
+                double difference = (value[1] - value[0]) / (2 * step) - gradient[i][k];
+                error2 += difference * difference;
+                size2 += gradient[i][k] * gradient[i][k];
+            }
+    }
+    check(sqrt(error2 / size2) < 0.03);
+    dem_lines_release(&lines);
+    close_fixture(&f);
+}
+
+static void lines_give_the_same_bits_on_every_instruction_set_and_for_any_number_of_threads(void **state)
+{
+    (void)state;
+    fixture f;
+    open_fixture(&f);
+    size_t sets;
+    const dem_pack_kernels *const *all = dem_pack_kernels_all(&sets);
+    dem_line_volumes first = {0};
+    double first_gradient[BALLS][4];
+    bool have = false;
+    for (size_t s = 0; s < sets; s++)
+        for (int threads = 1; threads <= 3 && all[s]->usable(); threads++) {
+            double gradient[BALLS][4];
+            dem_lines lines;
+            build(&f, all[s], 0.0125, threads, &lines);
+            dem_line_volumes v = measure(&f, &lines, gradient);
+            if (!have) {
+                first = v;
+                memcpy(first_gradient, gradient, sizeof gradient);
+                have = true;
+            }
+            check(memcmp(&v, &first, sizeof v) == 0);
+            check(memcmp(gradient, first_gradient, sizeof gradient) == 0);
+            dem_lines_release(&lines);
+        }
+    close_fixture(&f);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(volumes_by_lines_are_the_exact_ones),
+        cmocka_unit_test(the_gradient_is_that_of_finite_differences),
+        cmocka_unit_test(lines_give_the_same_bits_on_every_instruction_set_and_for_any_number_of_threads),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
