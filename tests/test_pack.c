@@ -105,7 +105,7 @@ static void needles_plates_tetrahedra_and_spheres_end_and_keep_every_promise(voi
 static void count_warning(void *user, dem_log_level level, const char *subject, const char *text)
 {
     (void)subject;
-    *(int *)user += level == DEM_LOG_WARNING && strstr(text, "use more spheres");
+    *(int *)user += level == DEM_LOG_WARNING && strstr(text, "IoU gap");
 }
 
 static void a_poor_fit_is_told(void **state)
@@ -188,8 +188,11 @@ static void a_mesh_too_large_for_a_tree_is_packed_by_a_stand_in(void **state)
 {
     (void)state;
     dem_mesh sphere = shape_sphere(120);  // 115200 triangles
-    for (size_t i = 0; i < sphere.vertex_count; i++)
-        sphere.vertices[i].x *= 1.6;
+    // with valleys: there the mean points of the stand-in lie outside the grain
+    for (size_t i = 0; i < sphere.vertex_count; i++) {
+        dem_vec3 *v = &sphere.vertices[i];
+        *v = v3_scale(v3(1.6 * v->x, v->y, v->z), 1 - 0.1 * (1 - cos(9 * v->x)) - 0.08 * (1 - cos(7 * v->y)));
+    }
     for (dem_side side = DEM_SIDE_BOTH; side <= DEM_SIDE_INSCRIBED; side++) {
         dem_pack_options options = spheres(12, DEM_EFFORT_FAST);
         options.side = side;
@@ -198,7 +201,7 @@ static void a_mesh_too_large_for_a_tree_is_packed_by_a_stand_in(void **state)
         dem_error error;
         check_promises(&sphere, &p, 12);
         check_ok(dem_fidelity_measure(NULL, &sphere, p.balls, p.count, 2000, &fidelity, &error), error);
-        check(fidelity.iou_gap < (side == DEM_SIDE_BOTH ? 0.02 : 0.05));
+        check(fidelity.iou_gap < (side == DEM_SIDE_BOTH ? 0.15 : 0.3));
         if (side == DEM_SIDE_INSCRIBED)
             check(fidelity.protrusion <= 0);
         dem_pack_free(&p);

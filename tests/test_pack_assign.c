@@ -77,10 +77,10 @@ static void samples_belong_to_the_nearest_ball_also_after_small_and_large_moves(
     open_fixture(&f, NULL, 1);
     check_ok(dem_pack_assign(&f.p, &f.state, &error), error);
     check_assignment(&f);
-    for (int k = 0; k < 6; k++) {
+    for (int k = 0; k < 10; k++) {
         for (size_t i = 0; i < f.state.count; i++) {
-            double step = k < 4 ? 0.005 : 0.1;   // within the slack of the near lists, and far beyond
-            f.state.balls[i].centre.x += (i + (size_t)k) % 2 ? step : -step;
+            double step = k < 8 ? 0.005 : 0.1;   // adding up to more than the slack of the near lists, then far beyond
+            f.state.balls[i].centre.x += i % 2 ? step : -step;
             f.state.balls[i].radius += i % 3 ? 0.001 : -0.001;
         }
         check_ok(dem_pack_assign_moved(&f.p, &f.state, &error), error);
