@@ -493,10 +493,11 @@ static void lines(const dem_ball_columns *balls, dem_line_task *task, bool gradi
         for (uint32_t s = field->strip[row]; s < field->strip[row + 1]; s++) {
             int32_t column = field->first[row] + (int32_t)(s - field->strip[row]) * DEM_LINE_LANES;
             const uint32_t *start = task->start + (s - field->strip[task->begin]);
+            if (start[0] == start[1])
+                continue;
             strip_place place = {balls, task, task->list + start[0], start[1] - start[0], s,
                                  field->origin[0] + (float)column * field->step, y};
-            if (place.count)
-                add_strip(&place, &sums, gradient);
+            add_strip(&place, &sums, gradient);
         }
         for (int l = 0; l < DEM_LINE_LANES; l++) {
             covered += (double)sums.covered[l];
