@@ -292,7 +292,7 @@ int main(int argc, char **argv)
         {"mass-from", 0, CLI_CHOICE, mass_names, "whose mass, centre and inertia the clump gets (default mesh)",
          &a.mass_from, 0, 0},
         {"repair", 0, CLI_CHOICE, repair_names, "what to do with a faulty mesh (default auto)", &a.repair, 0, 0},
-        {"wrap-detail", 0, CLI_PERCENT, "PCT", "smallest feature --repair wrap follows, % of the size (default 0.5)",
+        {"wrap-detail", 0, CLI_PERCENT, "PCT", "smallest feature --repair wrap follows, % of the size (default 1)",
          &a.wrap_detail, 0.01, 50},
         {"keep", 0, CLI_CHOICE, keep_names, "what to do with several separate bodies (default one: refuse)", &a.keep, 0,
          0},
