@@ -5,4 +5,6 @@
 #include "dem/clump.h"
 #include "dem/mesh.h"
 #include "dem/picture.h"
+#include "dem/scene.h"
+#include "dem/world.h"
 #endif

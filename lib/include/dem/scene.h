@@ -1,0 +1,231 @@
+/// Scenes: what a world is made from. Plain values with defaults; a scene file (dem-scene/1) reads into them.
+///
+/// SI units. A number that was not given and has no default is NAN. Formulas: PHYSICS of the design, named where used.
+#ifndef DEM_SCENE_H
+#define DEM_SCENE_H
+
+#include "dem/base.h"
+#include "dem/clump.h"
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+typedef struct dem_material {
+    const char *name;
+    double density;  ///< [kg/m^3]; NAN: the clump's own
+    double young;    ///< Young's modulus [Pa]
+    double poisson;  ///< Poisson's ratio [-]
+} dem_material;
+
+typedef enum dem_normal_law {
+    DEM_NORMAL_LINEAR,  ///< F = k overlap
+    DEM_NORMAL_HERTZ,   ///< F = 4/3 E* sqrt(R*) overlap^1.5
+} dem_normal_law;
+
+typedef enum dem_damping_law {
+    DEM_DAMPING_NONE,
+    DEM_DAMPING_RESTITUTION,  ///< a dashpot that gives the asked coefficient of restitution
+    DEM_DAMPING_RATE,         ///< c = m_eff G
+} dem_damping_law;
+
+/// What happens where spring and dashpot together would pull at the end of a contact.
+typedef enum dem_tail {
+    DEM_TAIL_CUT,      ///< the force is cut at 0, and the damping ratio is the one that gives the asked restitution so
+    DEM_TAIL_TENSION,  ///< the dashpot may pull
+} dem_tail;
+
+/// The mass that a contact's dashpot sees.
+typedef enum dem_effective_mass {
+    DEM_MASS_LOCAL,  ///< of the two surfaces at the contact point, along its normal
+    DEM_MASS_BODY,   ///< m_p m_q / (m_p + m_q)
+} dem_effective_mass;
+
+typedef enum dem_friction_law {
+    DEM_FRICTION_NONE,
+    DEM_FRICTION_LINEAR,   ///< spring k_t
+    DEM_FRICTION_MINDLIN,  ///< spring 8 G* sqrt(R* overlap)
+} dem_friction_law;
+
+/// The law between two materials.
+typedef struct dem_pair_law {
+    uint32_t materials[2];
+    dem_effective_mass effective_mass;
+    dem_normal_law normal;
+    double stiffness;             ///< of the linear law [N/m]; 0: k = E A / L from the materials
+    dem_damping_law damping;
+    double restitution;           ///< 0..1 [-]
+    double damping_rate;          ///< G [1/s]
+    dem_tail tail;
+    dem_friction_law friction;
+    double friction_coefficient;  ///< [-]
+    double tangential_stiffness;  ///< of the linear law [N/m]; NAN: stiffness_ratio of the normal one
+    double stiffness_ratio;       ///< k_t / k_n [-]
+    double tangential_rate;       ///< c_t = m_eff G_t [1/s]; NAN: c_t = c_n sqrt(k_t / k_n) with a restitution, else 0
+    bool rescale;                 ///< Mindlin: let the spring fall with the contact radius when unloading
+} dem_pair_law;
+
+/// One kind of grain. Exactly one of `clump_file`, `clump`, `sphere_radius` tells its form.
+typedef struct dem_shape_def {
+    const char *name;
+    const char *clump_file;  ///< resolved path; NULL: none
+    const dem_clump *clump;
+    double sphere_radius;    ///< [m]; 0: not a sphere
+    uint32_t material;
+} dem_shape_def;
+
+/// One body as it starts, velocities at the time of the position.
+typedef struct dem_body_def {
+    uint32_t shape;
+    double scale;           ///< of the shape [-]
+    dem_vec3 position;      ///< of the centre of mass [m]
+    dem_quat orientation;   ///< principal frame -> space
+    dem_vec3 velocity;      ///< [m/s]
+    dem_vec3 spin;          ///< angular velocity, axes of space [rad/s]
+} dem_body_def;
+
+typedef enum dem_size_law {
+    DEM_SIZE_AS_IS,      ///< the shape's own
+    DEM_SIZE_FIXED,      ///< a
+    DEM_SIZE_UNIFORM,    ///< from a to b
+    DEM_SIZE_NORMAL,     ///< mean a, standard deviation b
+    DEM_SIZE_LOGNORMAL,  ///< median a, standard deviation b of the logarithm
+    DEM_SIZE_TABLE,      ///< a grading curve: `passing` of `sizes`
+} dem_size_law;
+
+/// How the equivalent diameters of bodies are drawn.
+typedef struct dem_size_def {
+    dem_size_law law;
+    double a, b;             ///< [m], of the lognormal b [-]
+    double smallest, largest;  ///< draws outside are repeated [m]; 0 and INFINITY: any
+    bool by_mass;            ///< the law tells shares of mass, not of number
+    const double *sizes;     ///< ascending [m]
+    const double *passing;   ///< ascending from 0 to 1 [-]
+    size_t table_count;
+} dem_size_def;
+
+typedef struct dem_mix_def {
+    uint32_t shape;
+    double share;  ///< of the number of bodies, or of their mass; relative to the sum of all [-]
+    dem_size_def size;
+} dem_mix_def;
+
+/// Bodies to be placed at random without any overlap.
+typedef struct dem_fill_def {
+    const dem_mix_def *mix;
+    size_t mix_count;
+    bool share_by_mass;
+    dem_vec3 low, high;   ///< box that holds every sphere of every body [m]
+    size_t count;         ///< 0: by void ratio
+    double void_ratio;    ///< of the box: volume of voids / volume of solids [-]
+    double gap;           ///< least distance between surfaces [m]
+    dem_vec3 velocity;    ///< of all [m/s]
+    uint64_t seed;
+} dem_fill_def;
+
+/// Where the bodies come from, in this order: listed ones, then fills.
+typedef struct dem_bodies_def {
+    const dem_body_def *bodies;
+    size_t count;
+    const dem_fill_def *fills;
+    size_t fill_count;
+} dem_bodies_def;
+
+typedef enum dem_wall_kind { DEM_WALL_PLANE, DEM_WALL_CYLINDER, DEM_WALL_MESH } dem_wall_kind;
+
+/// A rigid wall. A box is six planes. Geometry as it stands at time 0.
+typedef struct dem_wall_def {
+    const char *name;
+    dem_wall_kind kind;
+    uint32_t material;
+    dem_vec3 point;          ///< of a plane; of a cylinder's axis [m]
+    dem_vec3 normal;         ///< unit, towards the bodies; of a cylinder: its axis
+    double radius;           ///< of a cylinder [m]
+    bool outside;            ///< the bodies are outside of a cylinder
+    const char *mesh_file;   ///< resolved path
+    dem_mesh mesh;           ///< [m]; read from mesh_file where that is given
+    dem_vec3 velocity;       ///< [m/s]
+    dem_vec3 through;        ///< a point of the axis of rotation [m]
+    dem_vec3 spin;           ///< angular velocity [rad/s]
+} dem_wall_def;
+
+typedef enum dem_leaving { DEM_LEAVING_ERROR, DEM_LEAVING_IGNORE } dem_leaving;
+
+typedef struct dem_domain_def {
+    dem_vec3 low, high;  ///< infinite where not given [m]
+    bool periodic[3];
+    dem_leaving leaving;  ///< what a body's centre outside of a side that is not periodic comes to
+} dem_domain_def;
+
+typedef enum dem_local_frame {
+    DEM_LOCAL_SPACE,   ///< each component of force and moment against that of the velocity
+    DEM_LOCAL_VECTOR,  ///< force and moment as vectors against the velocity
+} dem_local_frame;
+
+typedef struct dem_damping_def {
+    double local;            ///< Cundall's alpha, 0..1 [-]
+    dem_local_frame local_frame;
+    bool exclude_gravity;    ///< local damping acts on the contact forces only
+    double viscous;          ///< F = -c m v, T = -c L [1/s]
+} dem_damping_def;
+
+/// How several contacts of one pair of bodies add up.
+typedef enum dem_multiple { DEM_MULTIPLE_SUM, DEM_MULTIPLE_MEAN, DEM_MULTIPLE_MERGE } dem_multiple;
+
+typedef struct dem_time_def {
+    double end;            ///< [s]; NAN: not given
+    double step;           ///< [s]; 0: auto
+    double safety;         ///< of the automatic step [-]; NAN: 0.8, with a Hertz law 0.5
+    double contact_steps;  ///< least number of automatic steps in the shortest contact [-]; 0: stability alone
+} dem_time_def;
+
+typedef struct dem_output_def {
+    const char *directory;
+    double frames;          ///< interval [s]; 0: none
+    double series;          ///< interval [s]; 0: none
+    double checkpoint;      ///< interval [s]; 0: none
+    bool checkpoint_wall;   ///< the interval is of the clock on the wall
+    bool energy;            ///< keep the energy ledger
+} dem_output_def;
+
+/// A whole scene. Arrays are borrowed; those of a scene that was read belong to `owner`.
+typedef struct dem_scene {
+    const char *title;
+    dem_vec3 gravity;  ///< [m/s^2]
+    dem_time_def time;
+    dem_domain_def domain;
+    const dem_material *materials;
+    size_t material_count;
+    const dem_pair_law *laws;
+    size_t law_count;
+    const dem_shape_def *shapes;
+    size_t shape_count;
+    dem_bodies_def bodies;
+    const dem_wall_def *walls;
+    size_t wall_count;
+    dem_damping_def damping;
+    dem_multiple multiple;
+    dem_output_def output;
+    struct dem_scene_owner *owner;
+} dem_scene;
+
+/// An empty scene with all defaults.
+DEM_API dem_scene dem_scene_defaults(void);
+/// A law between two materials with all defaults: linear, no stiffness yet, no damping, no friction.
+DEM_API dem_pair_law dem_pair_law_defaults(void);
+
+/// Reads a scene file; the paths in it are relative to its folder. `overrides` are "path.to.key=value" texts, NULL
+/// behind the last (or NULL). Clumps, bodies' files and wall meshes are read too, so that a scene that was read is
+/// whole. Errors: DEM_BAD_INPUT with file, line and column, DEM_USAGE for a wrong override.
+DEM_API dem_status dem_scene_read(const dem_ctx *ctx, const char *path, const char *const *overrides, dem_scene *scene,
+                                  dem_error *error);
+DEM_API void dem_scene_release(dem_scene *scene);
+
+/// Appends the scene as a file with every default written out, bodies as they were given (files by name).
+/// The caller frees *text.
+DEM_API dem_status dem_scene_resolved(const dem_scene *scene, char **text, dem_error *error);
+
+#ifdef __cplusplus
+}
+#endif
+#endif
