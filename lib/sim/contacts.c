@@ -158,18 +158,25 @@ typedef struct list {
     size_t count, capacity;
 } list;
 
-// the old contact of these spheres, with its spring; in order, so mostly the next one
-static void take_history(const dem_world *w, const dem_segment *s, const dem_pair *p, dem_contact_item *item)
+// whether the k-th old contact of a pair comes before this one; both lists are sorted by their spheres
+static bool comes_before(const dem_contact_columns *c, size_t at, const dem_contact_item *item)
 {
-    for (size_t i = 0; i < p->count; i++) {
-        size_t at = segment_place(s, p->start + i);
-        const dem_contact_columns *c = &w->contacts.columns;
-        if (c->sphere_a[at] == item->sphere_a && c->sphere_b[at] == item->sphere_b) {
-            dem_contact_item old = dem_contact_get(c, at);
-            memcpy(item->spring, old.spring, sizeof item->spring);
-            item->loss = old.loss;
-            return;
-        }
+    return c->sphere_a[at] != item->sphere_a ? c->sphere_a[at] < item->sphere_a : c->sphere_b[at] < item->sphere_b;
+}
+
+// the spring of the old contact of these spheres; `k` goes through the old list of the pair beside the new one
+static void take_history(const dem_world *w, const dem_segment *s, const dem_pair *p, dem_contact_item *item, size_t *k)
+{
+    const dem_contact_columns *c = &w->contacts.columns;
+    while (*k < p->count && comes_before(c, segment_place(s, p->start + *k), item))
+        ++*k;
+    if (*k == p->count)
+        return;
+    size_t at = segment_place(s, p->start + *k);
+    if (c->sphere_a[at] == item->sphere_a && c->sphere_b[at] == item->sphere_b) {
+        dem_contact_item old = dem_contact_get(c, at);
+        memcpy(item->spring, old.spring, sizeof item->spring);
+        item->loss = old.loss;
     }
 }
 
@@ -183,7 +190,7 @@ static bool add_item(list *l, const dem_contact_item *item)
 
 static bool list_pair(const dem_world *w, const dem_segment *s, dem_pair *p, const dem_fresh *fresh, list *l)
 {
-    size_t start = l->count;
+    size_t start = l->count, old = 0;
     if (!fresh)
         for (size_t i = 0; i < p->count; i++) {
             dem_contact_item item = dem_contact_get(&w->contacts.columns, segment_place(s, p->start + i));
@@ -202,7 +209,7 @@ static bool list_pair(const dem_world *w, const dem_segment *s, dem_pair *p, con
                                      .sphere_b = b->first + pairs[2 * i + 1],
                                      .shift = p->image,
                                      .law = w->laws.table[a->material * w->laws.material_count + b->material]};
-            take_history(w, s, p, &item);
+            take_history(w, s, p, &item, &old);
             if (!add_item(l, &item))
                 return false;
         }

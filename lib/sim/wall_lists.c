@@ -87,25 +87,27 @@ static double look_at_mesh(wall_look *look, size_t row, uint32_t wall, double ma
     return slack;
 }
 
-// the springs of a body's old items, [from, to) of the old list; a ball's slots at one mesh follow each other
-static void take_springs(const dem_contacts *contacts, const dem_segment *s, size_t from, size_t to,
+// the springs of a body's old items, [k, end) of the old list; both are sorted by wall, then sphere, and a ball's slots
+// at one mesh follow each other
+static void take_springs(const dem_contacts *contacts, const dem_segment *s, size_t k, size_t end,
                          dem_contact_item *items, size_t count)
 {
     const dem_contact_columns *c = &contacts->columns;
-    size_t nth = 0;
     for (size_t i = 0; i < count; i++) {
         dem_contact_item *item = &items[i];
-        nth = i > 0 && item[-1].sphere_a == item->sphere_a && item[-1].sphere_b == item->sphere_b ? nth + 1 : 0;
-        size_t skip = nth;
-        for (size_t k = from; k < to; k++) {
-            size_t at = segment_place(s, k);
-            if (c->sphere_a[at] != item->sphere_a || c->sphere_b[at] != item->sphere_b || skip-- > 0)
-                continue;
-            dem_contact_item old = dem_contact_get(c, at);
-            memcpy(item->spring, old.spring, sizeof item->spring);
-            item->loss = old.loss;
-            break;
+        size_t at = 0;
+        for (; k < end; k++) {
+            at = segment_place(s, k);
+            if (c->sphere_b[at] > item->sphere_b ||
+                (c->sphere_b[at] == item->sphere_b && c->sphere_a[at] >= item->sphere_a))
+                break;
         }
+        if (k == end || c->sphere_a[at] != item->sphere_a || c->sphere_b[at] != item->sphere_b)
+            continue;
+        dem_contact_item old = dem_contact_get(c, at);
+        memcpy(item->spring, old.spring, sizeof item->spring);
+        item->loss = old.loss;
+        k++;
     }
 }
 
