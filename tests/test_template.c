@@ -126,7 +126,6 @@ static void points_stay_where_they_are_in_space(void **state)
     }
 }
 
-// the middle axis stands out where I1 and I3 are most alike, which ascending moments forbid: 1/x is monotone
 static void the_splitting_axis_is_the_best_one(void **state)
 {
     (void)state;

@@ -72,32 +72,11 @@ static dem_status check_sizes(const dem_template *t, const char *name, dem_error
     return DEM_OK;
 }
 
-// the axis of the principal frame that becomes z: it leaves the two most alike to the symmetric top
-static int splitting_axis(const double inertia[3])
+// whether the first axis becomes z and not the last: it leaves the two most alike to the symmetric top. The middle one
+// never is the best, for moments ascend
+static bool first_is_best(const double inertia[3])
 {
-    int best = 2;
-    double least = fabs(1 / inertia[0] - 1 / inertia[1]);
-    for (int c = 0; c < 2; c++) {
-        double unlike = fabs(1 / inertia[(c + 1) % 3] - 1 / inertia[(c + 2) % 3]);
-        if (unlike < least)
-            least = unlike, best = c;
-    }
-    return best;
-}
-
-// turns (x, y, z) into the coordinates that follow axis c in cyclic order
-static dem_vec3 renamed(dem_vec3 v, int c)
-{
-    return c == 2 ? v : c == 0 ? v3(v.y, v.z, v.x) : v3(v.z, v.x, v.y);
-}
-
-static dem_quat renaming(int c)
-{
-    // a third of a turn about (1, 1, 1), one way or the other
-    if (c == 2)
-        return (dem_quat){1, 0, 0, 0};
-    double s = c == 0 ? -0.5 : 0.5;
-    return (dem_quat){0.5, s, s, s};
+    return 1 / inertia[1] - 1 / inertia[2] < 1 / inertia[0] - 1 / inertia[1];
 }
 
 // the largest (c x n).I^-1 (c x n) over unit vectors n [1/kg]
@@ -123,26 +102,22 @@ static void set_mass(dem_template *t, const form *f)
 {
     t->centred = f->count == 1 && v3_norm(f->balls[0].centre) <= CENTRED * f->balls[0].radius;
     t->isotropic = alike(f->inertia, t->centred ? ROUND : EQUAL);
-    int c = t->isotropic ? 2 : splitting_axis(f->inertia);
-    t->to_run = renaming(c);
+    bool rename = !t->isotropic && first_is_best(f->inertia);
+    // x, y, z -> z, x, y is a third of a turn about (1, 1, 1)
+    t->to_run = rename ? (dem_quat){0.5, -0.5, -0.5, -0.5} : (dem_quat){1, 0, 0, 0};
     t->mass = f->mass;
     t->inverse_mass = 1 / f->mass;
     for (int k = 0; k < 3; k++) {
-        // z of the run frame is c, x and y follow it
-        t->inertia[k] = t->isotropic ? f->inertia[1] : f->inertia[(c + 1 + k) % 3];
+        t->inertia[k] = t->isotropic ? f->inertia[1] : f->inertia[(k + rename) % 3];
         t->inverse_inertia[k] = 1 / t->inertia[k];
     }
     t->equivalent_diameter = cbrt(6 * f->volume / DEM_PI);
 }
 
-static dem_ball sphere_of(const dem_template *t, const dem_ball *ball, int axis)
+static dem_ball sphere_of(const dem_template *t, const dem_ball *ball)
 {
-    return t->centred ? (dem_ball){{0, 0, 0}, ball->radius} : (dem_ball){renamed(ball->centre, axis), ball->radius};
-}
-
-static int axis_of(const dem_template *t)
-{
-    return t->to_run.x == 0 ? 2 : t->to_run.x < 0 ? 0 : 1;
+    dem_vec3 c = t->centred ? v3(0, 0, 0) : ball->centre;
+    return (dem_ball){t->to_run.w == 1 ? c : v3(c.y, c.z, c.x), ball->radius};
 }
 
 static void set_spheres(dem_template *t, const form *f, double (*rows)[4])
@@ -151,7 +126,7 @@ static void set_spheres(dem_template *t, const form *f, double (*rows)[4])
     t->radius_min = INFINITY;
     t->radius_out = t->radius_max = 0;
     for (size_t i = 0; i < f->count; i++) {
-        dem_ball b = sphere_of(t, &f->balls[i], axis_of(t));
+        dem_ball b = sphere_of(t, &f->balls[i]);
         rows[i][0] = b.centre.x;
         rows[i][1] = b.centre.y;
         rows[i][2] = b.centre.z;

@@ -5,7 +5,8 @@
 /// *Run frame.* The rotation is split so that one axis, c, is turned about apart from a top that is symmetric about it;
 /// the split is best where |1/I_a - 1/I_b| is smallest (PHYSICS 2.2, symmetric-top splitting). The run frame is the
 /// principal frame with its axes renamed in cyclic order, so that c is z: coordinates are only permuted, without any
-/// rounding. Outside of a running world everything is told in the principal frame; see template_run_orientation.
+/// rounding. As moments ascend, c is the last axis (nothing is renamed) or the first. Outside of a running world
+/// everything is told in the principal frame; see template_run_orientation.
 #ifndef DEM_SIM_TEMPLATE_H
 #define DEM_SIM_TEMPLATE_H
 
