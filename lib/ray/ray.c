@@ -3,6 +3,7 @@
 #include <stdlib.h>
 
 #include "base/memory.h"
+#include "math/vec.h"
 
 #if DEM_EMBREE
 
@@ -12,10 +13,17 @@
 #include <embree3/rtcore.h>
 #endif
 
+typedef struct shape {
+    RTCScene scene;
+    dem_vec3 origin;
+    double scale;
+    dem_box box;  // of the rounded vertices, in the shape's own frame; empty for balls
+} shape;
+
 struct dem_ray_scene {
     RTCDevice device;
     RTCScene scene;
-    RTCScene *shapes;
+    shape *shapes;
     size_t shape_count, shape_capacity;
 };
 
@@ -27,7 +35,8 @@ static dem_status outcome(const dem_ray_scene *scene, dem_error *error)
         return DEM_OK;
     if (code == RTC_ERROR_OUT_OF_MEMORY)
         return dem_fail_memory(error);
-    return dem_fail(error, DEM_FAILED, "the ray tracer failed (Embree error %d); leave the picture out", (int)code);
+    return dem_fail(error, DEM_FAILED, "the ray tracer failed (Embree error %d); leave out pictures and mesh walls",
+                    (int)code);
 }
 
 dem_status dem_ray_create(dem_ray_scene **scene, dem_error *error)
@@ -41,7 +50,8 @@ dem_status dem_ray_create(dem_ray_scene **scene, dem_error *error)
         int code = (int)rtcGetDeviceError(NULL);
         free(*scene);
         *scene = NULL;
-        return dem_fail(error, DEM_FAILED, "Embree does not start here (error %d); leave the picture out", code);
+        return dem_fail(error, DEM_FAILED, "Embree does not start here (error %d); leave out pictures and mesh walls",
+                        code);
     }
     (*scene)->scene = rtcNewScene((*scene)->device);
     return outcome(*scene, error);
@@ -52,7 +62,7 @@ void dem_ray_destroy(dem_ray_scene *scene)
     if (!scene)
         return;
     for (size_t i = 0; i < scene->shape_count; i++)
-        rtcReleaseScene(scene->shapes[i]);
+        rtcReleaseScene(scene->shapes[i].scene);
     rtcReleaseScene(scene->scene);
     rtcReleaseDevice(scene->device);
     free(scene->shapes);
@@ -60,19 +70,19 @@ void dem_ray_destroy(dem_ray_scene *scene)
 }
 
 // takes over `geometry`
-static dem_status add_shape(dem_ray_scene *scene, RTCGeometry geometry, dem_error *error)
+static dem_status add_shape(dem_ray_scene *scene, RTCGeometry geometry, shape added, dem_error *error)
 {
     dem_status status = outcome(scene, error);
     if (status == DEM_OK &&
         !dem_grow(&scene->shapes, &scene->shape_capacity, scene->shape_count, sizeof *scene->shapes))
         status = dem_fail_memory(error);
     if (status == DEM_OK) {
-        RTCScene shape = rtcNewScene(scene->device);
-        scene->shapes[scene->shape_count++] = shape;
-        rtcSetSceneFlags(shape, RTC_SCENE_FLAG_ROBUST);
+        added.scene = rtcNewScene(scene->device);
+        scene->shapes[scene->shape_count++] = added;
+        rtcSetSceneFlags(added.scene, RTC_SCENE_FLAG_ROBUST);
         rtcCommitGeometry(geometry);
-        rtcAttachGeometry(shape, geometry);
-        rtcCommitScene(shape);
+        rtcAttachGeometry(added.scene, geometry);
+        rtcCommitScene(added.scene);
         status = outcome(scene, error);
     }
     rtcReleaseGeometry(geometry);
@@ -95,13 +105,17 @@ dem_status dem_ray_add_mesh(dem_ray_scene *scene, const dem_vec3 *vertices, size
                                              vertex_count);
     uint32_t *indices = rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3,
                                                 3 * sizeof(uint32_t), triangle_count);
+    shape added = {.origin = origin, .scale = scale, .box = box_empty()};
     if (corners && indices) {
-        for (size_t i = 0; i < vertex_count; i++)
-            put_local(corners + 3 * i, vertices[i], origin, scale);
+        for (size_t i = 0; i < vertex_count; i++) {
+            float *at = corners + 3 * i;
+            put_local(at, vertices[i], origin, scale);
+            added.box = box_with(added.box, v3((double)at[0], (double)at[1], (double)at[2]));
+        }
         for (size_t i = 0; i < 3 * triangle_count; i++)
             indices[i] = triangles[i];
     }
-    return add_shape(scene, geometry, error);
+    return add_shape(scene, geometry, added, error);
 }
 
 dem_status dem_ray_add_balls(dem_ray_scene *scene, const dem_ball *balls, size_t count, dem_vec3 origin, double scale,
@@ -114,14 +128,14 @@ dem_status dem_ray_add_balls(dem_ray_scene *scene, const dem_ball *balls, size_t
         put_local(points + 4 * i, balls[i].centre, origin, scale);
         points[4 * i + 3] = (float)(balls[i].radius * scale);
     }
-    return add_shape(scene, geometry, error);
+    return add_shape(scene, geometry, (shape){.origin = origin, .scale = scale, .box = box_empty()}, error);
 }
 
-dem_status dem_ray_add_instance(dem_ray_scene *scene, uint32_t shape, const dem_ray_pose *pose, dem_error *error)
+dem_status dem_ray_add_instance(dem_ray_scene *scene, uint32_t number, const dem_ray_pose *pose, dem_error *error)
 {
-    DEM_ASSERT(shape < scene->shape_count);
+    DEM_ASSERT(number < scene->shape_count);
     RTCGeometry instance = rtcNewGeometry(scene->device, RTC_GEOMETRY_TYPE_INSTANCE);
-    rtcSetGeometryInstancedScene(instance, scene->shapes[shape]);
+    rtcSetGeometryInstancedScene(instance, scene->shapes[number].scene);
     rtcSetGeometryTransform(instance, 0, RTC_FORMAT_FLOAT3X4_COLUMN_MAJOR, pose);
     rtcCommitGeometry(instance);
     rtcAttachGeometry(scene->scene, instance);
@@ -179,12 +193,66 @@ bool dem_ray_occluded(const dem_ray_scene *scene, const dem_ray *ray)
     return query.tfar < 0;  // Embree marks an occluded ray by -infinity
 }
 
+typedef struct collection {
+    dem_ray_list *list;
+    bool failed;
+} collection;
+
+// false: go on with the same radius
+static bool collect(struct RTCPointQueryFunctionArguments *found)
+{
+    collection *c = found->userPtr;
+    dem_ray_list *list = c->list;
+    if (!dem_grow(&list->items, &list->capacity, list->count, sizeof *list->items))
+        c->failed = true;
+    else
+        list->items[list->count++] = found->primID;
+    return false;
+}
+
+// The sphere in floats that meets all of a shape that the sphere asked for meets. Its centre is brought into the
+// shape's box, so that a far point loses no digits: what lies in a box is no farther from the nearest point of the box
+// than a right angle there allows, reach^2 = radius^2 - outside^2. False: the sphere stays out of the box.
+static bool query_sphere(const shape *s, dem_vec3 point, double radius, struct RTCPointQuery *query)
+{
+    const double ulp = 0x1p-24;  // largest relative error of rounding to float
+    dem_vec3 local = v3_scale(v3_sub(point, s->origin), s->scale);
+    dem_vec3 centre = v3_max(s->box.low, v3_min(s->box.high, local));
+    dem_vec3 far = v3_max(s->box.high, v3_scale(s->box.low, -1));
+    double extent = fmax(far.x, fmax(far.y, far.z)), outside = v3_distance(local, centre);
+    // each vertex has moved by up to sqrt(3) ulp extent; the double numbers are good to a few 2^-53 of their size
+    double r = radius * s->scale + 2 * ulp * extent + 0x1p-50 * (extent + outside), slack = r - outside;
+    if (!(slack >= 0))
+        return false;
+    double reach = fmin(sqrt(slack * (r + outside)), box_diagonal(s->box));
+    // the centre is rounded like the vertices, and the tracer rounds differences, squares and sums: 4 ulp at the most
+    reach = (reach + 2 * ulp * extent) * (1 + 8 * ulp) + 0x1p-100;
+    *query = (struct RTCPointQuery){(float)centre.x, (float)centre.y, (float)centre.z, 0, (float)reach};
+    return true;
+}
+
+bool dem_ray_near(const dem_ray_scene *scene, uint32_t number, dem_vec3 point, double radius, dem_ray_list *list)
+{
+    DEM_ASSERT(number < scene->shape_count);
+    const shape *s = &scene->shapes[number];
+    struct RTCPointQuery query;
+    list->count = 0;
+    if (!query_sphere(s, point, radius, &query))
+        return true;
+    struct RTCPointQueryContext context;
+    rtcInitPointQueryContext(&context);
+    collection c = {list, false};
+    rtcPointQuery(s->scene, &query, &context, collect, &c);
+    return !c.failed;
+}
+
 #else
 
 dem_status dem_ray_create(dem_ray_scene **scene, dem_error *error)
 {
     *scene = NULL;
-    return dem_fail(error, DEM_UNAVAILABLE, "built without Embree, which pictures need; build with -DDEM_EMBREE=ON");
+    return dem_fail(error, DEM_UNAVAILABLE,
+                    "built without Embree, which pictures and mesh walls need; build with -DDEM_EMBREE=ON");
 }
 
 void dem_ray_destroy(dem_ray_scene *scene)
@@ -229,6 +297,13 @@ bool dem_ray_occluded(const dem_ray_scene *scene, const dem_ray *ray)
 {
     (void)scene, (void)ray;
     return false;
+}
+
+bool dem_ray_near(const dem_ray_scene *scene, uint32_t shape, dem_vec3 point, double radius, dem_ray_list *list)
+{
+    (void)scene, (void)shape, (void)point, (void)radius;
+    list->count = 0;
+    return true;
 }
 
 #endif

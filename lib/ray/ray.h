@@ -1,8 +1,10 @@
-/// Rays through scenes of placed meshes and balls, by Embree, in 32-bit floats.
+/// Rays through scenes of placed meshes and balls, and the triangles near a point, by Embree, in 32-bit floats.
 ///
 /// A shape is built once, in a frame of its own in which it has about unit size: a point x of it becomes
 /// (x - origin) * scale before it is rounded, so neither tiny grains nor far ones lose their form. Instances
 /// place shapes in the scene, whose size should be of order one as well.
+///
+/// Who only asks what is near needs neither instances nor a commit.
 ///
 /// Without Embree every dem_ray_create is DEM_UNAVAILABLE.
 #ifndef DEM_RAY_RAY_H
@@ -41,11 +43,23 @@ dem_status dem_ray_add_balls(dem_ray_scene *scene, const dem_ball *balls, size_t
 /// Instances are numbered from 0 in the order they are added.
 dem_status dem_ray_add_instance(dem_ray_scene *scene, uint32_t shape, const dem_ray_pose *pose, dem_error *error);
 
-/// Ends building; before it no ray may be cast, after it nothing added.
+/// Ends building; before it no ray may be cast, after it nothing added (asking what is near may start earlier).
 dem_status dem_ray_commit(dem_ray_scene *scene, dem_error *error);
 
 /// The nearest hit. Any number of threads may cast rays at once.
 bool dem_ray_closest(const dem_ray_scene *scene, const dem_ray *ray, dem_ray_hit *hit);
 bool dem_ray_occluded(const dem_ray_scene *scene, const dem_ray *ray);
+
+/// Triangle numbers; grows as needed. Zero-initialise, free `items` at the end.
+typedef struct dem_ray_list {
+    uint32_t *items;
+    size_t count, capacity;
+} dem_ray_list;
+
+/// Puts all triangles of a mesh shape that may lie within `radius` of a point into the list, in any order: none that
+/// does in exact arithmetic is missing, some that do not may be there, and which depends on the machine. Point and
+/// radius are in the frame the vertices were given in. Any number of threads may ask at once, each with a list of its
+/// own. False: no memory.
+bool dem_ray_near(const dem_ray_scene *scene, uint32_t shape, dem_vec3 point, double radius, dem_ray_list *list);
 
 #endif
