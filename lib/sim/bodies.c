@@ -102,7 +102,7 @@ static void put_body(dem_world *w, size_t row, const dem_body_def *def)
     b->shape[row] = def->shape;
     b->radius[row] = t->radius_out * def->scale;
     put_inertia(w, row, t, def->scale);
-    dem_quat q = quat_multiply(quat_unit(def->orientation), quat_conjugate(t->to_run));
+    dem_quat q = template_run_orientation(t, quat_unit(def->orientation));
     memcpy(pose, (double[]){def->position.x, def->position.y, def->position.z, q.w, q.x, q.y, q.z, def->scale},
            8 * sizeof *pose);
     memcpy(motion,

@@ -18,27 +18,36 @@ typedef struct level {
     double cell, radius; // edge of a cell, largest radius [m]
     uint32_t dims[3];    // powers of two
     size_t begin, end;   // in the sorted columns
-    uint32_t *start;     // [cells + 1]
+    uint32_t *start;     // [cells + 2]
+    size_t start_capacity;
 } level;
 
-typedef struct search {
+typedef struct near_pair {
+    uint32_t a, b, image;
+} near_pair;
+
+typedef struct pair_limits {
+    double a, b;
+} pair_limits;
+
+/// Kept from one search to the next, as fresh memory would cost more than the search.
+struct dem_search {
     dem_world *w;
-    const dem_bodies *b;
     level levels[LEVELS];
     int level_count;
-    uint8_t *level_of;
     dem_box box;
     double pad;           // of distances in 32 bits [m]
     float *x, *y, *z, *r; // sorted by level and cell
-    uint32_t *id, *cell;
-    uint32_t *found;
-    struct near {
-        uint32_t a, b, image;
-    } * near;
-    size_t near_count, near_capacity;
+    uint32_t *id, *cell, *found;
+    uint8_t *level_of;
     int32_t *moved;
-    dem_arena arena;
-} search;
+    near_pair *near, *sorted;
+    size_t near_count, near_capacity, sorted_capacity;
+    pair_limits *limits;
+    size_t limit_capacity;
+    dem_pairs spare; // to be filled while the old ones are still read
+};
+typedef struct dem_search search;
 
 double dem_broad_skin(const dem_world *w)
 {
@@ -52,7 +61,7 @@ dem_status dem_broad_images(dem_world *w, dem_error *error)
 {
     double side[3], largest = 0;
     for (size_t i = 0; i < w->bodies.count; i++)
-        largest = fmax(largest, w->bodies.radius[i]);
+        largest = larger(largest, w->bodies.radius[i]);
     for (int k = 0; k < 3; k++) {
         side[k] = w->domain.periodic[k] ? v3_get(w->domain.high, k) - v3_get(w->domain.low, k) : 0;
         if (w->domain.periodic[k] && side[k] * (DEM_IMAGES_ASIDE - 1) < 2 * largest + w->skin)
@@ -94,10 +103,14 @@ static bool make_level(search *s, level *l, size_t bodies)
             break;
         l->dims[longest] /= 2;
     }
-    size_t cells = (size_t)l->dims[0] * l->dims[1] * l->dims[2];
-    l->start = dem_arena_take(&s->arena, cells + 2, sizeof *l->start);
+    size_t cells = (size_t)l->dims[0] * l->dims[1] * l->dims[2] + 2;
+    if (cells > l->start_capacity) {
+        free(l->start);
+        l->start = dem_alloc(cells, sizeof *l->start);
+        l->start_capacity = l->start ? cells : 0;
+    }
     if (l->start)
-        memset(l->start, 0, (cells + 2) * sizeof *l->start);
+        memset(l->start, 0, cells * sizeof *l->start);
     return l->start;
 }
 
@@ -105,8 +118,10 @@ static void cell_of(const search *s, const level *l, dem_vec3 x, int32_t cell[3]
 {
     for (int k = 0; k < 3; k++) {
         // whole numbers, however far it is
-        double at = fmax(fmin((v3_get(x, k) - v3_get(s->box.low, k)) / l->cell, 9e15), -9e15);
-        cell[k] = (int32_t)((int64_t)floor(at) & (int64_t)(l->dims[k] - 1));
+        double at = larger(smaller((v3_get(x, k) - v3_get(s->box.low, k)) / l->cell, 9e15), -9e15);
+        int64_t whole = (int64_t)at;
+        whole -= at < (double)whole;
+        cell[k] = (int32_t)(whole & (int64_t)(l->dims[k] - 1));
     }
 }
 
@@ -117,41 +132,62 @@ static size_t cell_index(const level *l, int32_t x, int32_t y, int32_t z)
     return ((size_t)cz * l->dims[1] + cy) * l->dims[0] + cx;
 }
 
-static bool take_columns(search *s)
+dem_status dem_search_create(dem_world *w, dem_error *error)
 {
-    size_t n = s->b->count, room = n + 2 * DEM_WIDTH_FLOAT + 32;
-    s->x = dem_arena_take(&s->arena, room, sizeof *s->x);
-    s->y = dem_arena_take(&s->arena, room, sizeof *s->y);
-    s->z = dem_arena_take(&s->arena, room, sizeof *s->z);
-    s->r = dem_arena_take(&s->arena, room, sizeof *s->r);
-    s->id = dem_arena_take(&s->arena, room, sizeof *s->id);
-    s->cell = dem_arena_take(&s->arena, n + 1, sizeof *s->cell);
-    s->found = dem_arena_take(&s->arena, 2 * room, sizeof *s->found);
-    s->level_of = dem_arena_take(&s->arena, n + 1, sizeof *s->level_of);
-    s->moved = dem_arena_take(&s->arena, 3 * n + 3, sizeof *s->moved);
-    return !s->arena.failed;
+    search *s = w->search = dem_alloc_zero(1, sizeof *s);
+    if (!s)
+        return dem_fail_memory(error);
+    size_t n = w->bodies.count, room = n + 2 * DEM_WIDTH_FLOAT + 32;
+    s->w = w;
+    s->x = dem_alloc_zero(room, sizeof *s->x);
+    s->y = dem_alloc_zero(room, sizeof *s->y);
+    s->z = dem_alloc_zero(room, sizeof *s->z);
+    s->r = dem_alloc_zero(room, sizeof *s->r);
+    s->id = dem_alloc_zero(room, sizeof *s->id);
+    s->cell = dem_alloc(n + 1, sizeof *s->cell);
+    s->found = dem_alloc(2 * room, sizeof *s->found);
+    s->level_of = dem_alloc(n + 1, sizeof *s->level_of);
+    s->moved = dem_alloc_zero(3 * n + 3, sizeof *s->moved);
+    bool good = s->x && s->y && s->z && s->r && s->id && s->cell && s->found && s->level_of && s->moved;
+    return good ? DEM_OK : dem_fail_memory(error);
+}
+
+void dem_search_destroy(dem_search *s)
+{
+    if (!s)
+        return;
+    void *all[] = {s->x,     s->y,        s->z,     s->r,    s->id,     s->cell,
+                   s->found, s->level_of, s->moved, s->near, s->sorted, s->limits};
+    for (size_t i = 0; i < sizeof all / sizeof *all; i++)
+        free(all[i]);
+    for (int i = 0; i < LEVELS; i++)
+        free(s->levels[i].start);
+    dem_pairs_release(&s->spare);
+    free(s);
 }
 
 // sizes within a factor of two share a grid
 static void sort_by_size(search *s, size_t counts[LEVELS])
 {
-    const dem_bodies *b = s->b;
+    const dem_bodies *b = &s->w->bodies;
     double smallest = INFINITY, largest[LEVELS] = {0};
     size_t sizes[LEVELS] = {0};
     int rank[LEVELS];
     for (size_t i = 0; i < b->count; i++)
-        smallest = fmin(smallest, b->radius[i]);
+        smallest = smaller(smallest, b->radius[i]);
     for (size_t i = 0; i < b->count; i++) {
-        int octave = (int)fmin(log2(b->radius[i] / smallest) + 1e-9, LEVELS - 1);
+        int octave = (int)smaller(log2(b->radius[i] / smallest) + 1e-9, LEVELS - 1);
         s->level_of[i] = (uint8_t)octave;
         sizes[octave]++;
-        largest[octave] = fmax(largest[octave], b->radius[i]);
+        largest[octave] = larger(largest[octave], b->radius[i]);
     }
     for (int k = 0; k < LEVELS; k++)
         if (sizes[k]) {
             rank[k] = s->level_count;
             counts[s->level_count] = sizes[k];
-            s->levels[s->level_count++] = (level){.cell = 2 * largest[k] + s->w->skin + s->pad, .radius = largest[k]};
+            level *l = &s->levels[s->level_count++];
+            l->cell = 2 * largest[k] + s->w->skin + s->pad;
+            l->radius = largest[k];
         }
     for (size_t i = 0; i < b->count; i++)
         s->level_of[i] = (uint8_t)rank[s->level_of[i]];
@@ -159,13 +195,13 @@ static void sort_by_size(search *s, size_t counts[LEVELS])
 
 static dem_status build_grids(search *s, dem_error *error)
 {
-    const dem_bodies *b = s->b;
+    const dem_bodies *b = &s->w->bodies;
     size_t counts[LEVELS];
     s->box = box_empty();
     double largest = 0;
     for (size_t i = 0; i < b->count; i++) {
         s->box = box_with(s->box, body_position(b, i));
-        largest = fmax(largest, b->radius[i]);
+        largest = larger(largest, b->radius[i]);
     }
     // positions are rounded to 32 bits with respect to the corner of the box
     s->pad = 4e-7 * (box_diagonal(s->box) + 4 * largest);
@@ -232,18 +268,30 @@ static size_t look_around(search *s, const level *l, dem_vec3 x, double reach)
     return job.count;
 }
 
+// memory for `count` items, whose old content is not needed
+static bool make_room(void *array, size_t *capacity, size_t count, size_t size)
+{
+    void **p = array;
+    if (count <= *capacity && *p)
+        return true;
+    free(*p);
+    *capacity = count + count / 8;
+    *p = dem_alloc(*capacity, size);
+    return *p != NULL;
+}
+
 static bool add_near(search *s, uint32_t a, uint32_t b, uint32_t image)
 {
     if (!dem_grow(&s->near, &s->near_capacity, s->near_count, sizeof *s->near))
         return false;
-    s->near[s->near_count++] = (struct near){a, b, image};
+    s->near[s->near_count++] = (near_pair){a, b, image};
     return true;
 }
 
 // partners of body i seen from where its image stands
 static bool look_from_image(search *s, uint32_t i, const int image[3])
 {
-    const dem_bodies *b = s->b;
+    const dem_bodies *b = &s->w->bodies;
     bool own = image[0] == 0 && image[1] == 0 && image[2] == 0;
     bool first_half = image[0] != 0 ? image[0] > 0 : image[1] != 0 ? image[1] > 0 : image[2] > 0;
     uint32_t away = image_row(image[0], image[1], image[2]), back = image_row(-image[0], -image[1], -image[2]);
@@ -268,12 +316,12 @@ static bool look_from_image(search *s, uint32_t i, const int image[3])
 static bool look_from(search *s, uint32_t i)
 {
     const dem_domain_def *domain = &s->w->domain;
-    double reach = s->b->radius[i] + s->levels[s->level_count - 1].radius + s->w->skin;
+    double reach = s->w->bodies.radius[i] + s->levels[s->level_count - 1].radius + s->w->skin;
     int low[3] = {0}, high[3] = {0};
     for (int k = 0; k < 3; k++)
         if (domain->periodic[k]) {
             double from = v3_get(domain->low, k), side = v3_get(domain->high, k) - from;
-            double at = v3_get(body_position(s->b, i), k) - from;
+            double at = v3_get(body_position(&s->w->bodies, i), k) - from;
             // images whose reach touches the domain
             low[k] = -(int)floor((at + reach) / side);
             high[k] = (int)floor((side - at + reach) / side);
@@ -290,20 +338,20 @@ static bool look_from(search *s, uint32_t i)
 
 static int by_partner(const void *a, const void *b)
 {
-    const struct near *p = a, *q = b;
+    const near_pair *p = a, *q = b;
     if (p->b != q->b)
         return p->b < q->b ? -1 : 1;
     return p->image < q->image ? -1 : p->image > q->image;
 }
 
-static void sort_partners(struct near *near, size_t count)
+static void sort_partners(near_pair *near, size_t count)
 {
     if (count > 64) {
         qsort(near, count, sizeof *near, by_partner);
         return;
     }
     for (size_t i = 1; i < count; i++) {
-        struct near v = near[i];
+        near_pair v = near[i];
         size_t j = i;
         for (; j > 0 && by_partner(&near[j - 1], &v) > 0; j--)
             near[j] = near[j - 1];
@@ -312,28 +360,27 @@ static void sort_partners(struct near *near, size_t count)
 }
 
 // by a, then b, then image; first[a] is where those of a begin
-static dem_status sort_near(search *s, uint32_t *first, dem_error *error)
+static dem_status sort_near(search *s, uint32_t *first, const near_pair **sorted, dem_error *error)
 {
-    size_t n = s->b->count;
+    near_pair *near = s->near;
+    size_t n = s->w->bodies.count;
     memset(first, 0, (n + 1) * sizeof *first);
     for (size_t i = 0; i < s->near_count; i++)
         first[s->near[i].a + 1]++;
     for (size_t i = 0; i < n; i++)
         first[i + 1] += first[i];
     if (s->level_count > 1 || s->w->periodic) {
-        struct near *sorted = dem_alloc(s->near_count, sizeof *sorted);
-        if (!sorted)
+        if (!make_room(&s->sorted, &s->sorted_capacity, s->near_count, sizeof *s->sorted))
             return dem_fail_memory(error);
         for (size_t i = 0; i < s->near_count; i++)
-            sorted[first[s->near[i].a]++] = s->near[i];
+            s->sorted[first[s->near[i].a]++] = s->near[i];
         memmove(first + 1, first, n * sizeof *first);
         first[0] = 0;
-        free(s->near);
-        s->near = sorted;
-        s->near_capacity = s->near_count;
+        near = s->sorted;
     }
     for (size_t i = 0; i < n; i++)
-        sort_partners(s->near + first[i], first[i + 1] - first[i]);
+        sort_partners(near + first[i], first[i + 1] - first[i]);
+    *sorted = near;
     return DEM_OK;
 }
 
@@ -352,17 +399,35 @@ static uint32_t moved_image(const search *s, const dem_pair *p)
     return image_row(image[0], image[1], image[2]);
 }
 
+// as many pairs as asked for, on the memory that is there
 static bool take_pairs(dem_pairs *pairs, size_t bodies, size_t count)
 {
-    pairs->count = pairs->capacity = count;
-    pairs->items = dem_alloc(count, sizeof *pairs->items);
-    pairs->first = dem_alloc(bodies + 1, sizeof *pairs->first);
-    pairs->adjacency_first = dem_alloc_zero(bodies + 1, sizeof *pairs->adjacency_first);
-    pairs->adjacency = dem_alloc(2 * count, sizeof *pairs->adjacency);
-    pairs->adjacency_limit = dem_alloc(2 * count, sizeof *pairs->adjacency_limit);
-    pairs->fresh = dem_alloc_zero(count, sizeof *pairs->fresh);
-    return pairs->items && pairs->first && pairs->adjacency_first && pairs->adjacency && pairs->adjacency_limit &&
+    size_t room = pairs->capacity;
+    bool good = true;
+    if (!pairs->first) {
+        pairs->first = dem_alloc(bodies + 1, sizeof *pairs->first);
+        pairs->adjacency_first = dem_alloc(bodies + 1, sizeof *pairs->adjacency_first);
+    }
+    if (count > room || !pairs->items) {
+        room = count + count / 8;
+        free(pairs->items);
+        free(pairs->adjacency);
+        free(pairs->adjacency_limit);
+        free(pairs->fresh);
+        pairs->items = dem_alloc(room, sizeof *pairs->items);
+        pairs->adjacency = dem_alloc(2 * room, sizeof *pairs->adjacency);
+        pairs->adjacency_limit = dem_alloc(2 * room, sizeof *pairs->adjacency_limit);
+        pairs->fresh = dem_alloc(room, sizeof *pairs->fresh);
+    }
+    good = pairs->first && pairs->adjacency_first && pairs->items && pairs->adjacency && pairs->adjacency_limit &&
            pairs->fresh;
+    pairs->count = good ? count : 0;
+    pairs->capacity = good ? room : 0;
+    if (good) {
+        memset(pairs->adjacency_first, 0, (bodies + 1) * sizeof *pairs->adjacency_first);
+        memset(pairs->fresh, 0, count * sizeof *pairs->fresh);
+    }
+    return good;
 }
 
 void dem_pairs_release(dem_pairs *pairs)
@@ -375,18 +440,14 @@ void dem_pairs_release(dem_pairs *pairs)
     free(pairs->fresh);
 }
 
-typedef struct pair_limits {
-    double a, b;
-} pair_limits;
-
 // what is known of the pairs that stay; the segments of those that go with contacts, or are seen elsewhere, are dirty
-static void merge_pairs(search *s, const dem_pairs *old, dem_pairs *pairs, pair_limits *limits)
+static void merge_pairs(search *s, const near_pair *near, const dem_pairs *old, dem_pairs *pairs, pair_limits *limits)
 {
-    for (size_t a = 0; a < s->b->count; a++) {
+    for (size_t a = 0; a < s->w->bodies.count; a++) {
         size_t o = old->count ? old->first[a] : 0, o_end = old->count ? old->first[a + 1] : 0;
         bool *dirty = &s->w->contacts.segments[a / DEM_SEGMENT].dirty;
         for (size_t i = pairs->first[a]; i < pairs->first[a + 1]; i++) {
-            const struct near *n = &s->near[i];
+            const near_pair *n = &near[i];
             pairs->items[i] = (dem_pair){.a = n->a, .b = n->b, .normal = {9}, .image = n->image};
             limits[i] = (pair_limits){-1, -1};
             for (; o < o_end; o++) {
@@ -412,7 +473,7 @@ static void merge_pairs(search *s, const dem_pairs *old, dem_pairs *pairs, pair_
 
 static void link_adjacency(const search *s, dem_pairs *pairs, const pair_limits *limits)
 {
-    size_t n = s->b->count;
+    size_t n = s->w->bodies.count;
     uint32_t *first = pairs->adjacency_first;
     for (size_t i = 0; i < pairs->count; i++) {
         first[pairs->items[i].a + 1]++;
@@ -434,40 +495,32 @@ static void link_adjacency(const search *s, dem_pairs *pairs, const pair_limits 
 
 static dem_status replace_pairs(search *s, dem_error *error)
 {
-    dem_pairs old = s->w->pairs, pairs = {0};
-    pair_limits *limits = dem_alloc(s->near_count, sizeof *limits);
-    dem_status status = DEM_OK;
-    if (!limits || !take_pairs(&pairs, s->b->count, s->near_count))
-        status = dem_fail_memory(error);
-    if (status == DEM_OK)
-        status = sort_near(s, pairs.first, error);
-    if (status == DEM_OK) {
-        merge_pairs(s, &old, &pairs, limits);
-        link_adjacency(s, &pairs, limits);
-        s->w->pairs = pairs;
-        dem_pairs_release(&old);
-    } else
-        dem_pairs_release(&pairs);
-    free(limits);
-    return status;
+    dem_pairs *pairs = &s->spare;
+    const near_pair *near = NULL;
+    if (!make_room(&s->limits, &s->limit_capacity, s->near_count, sizeof *s->limits) ||
+        !take_pairs(pairs, s->w->bodies.count, s->near_count))
+        return dem_fail_memory(error);
+    DEM_TRY(sort_near(s, pairs->first, &near, error));
+    merge_pairs(s, near, &s->w->pairs, pairs, s->limits);
+    link_adjacency(s, pairs, s->limits);
+    dem_pairs old = s->w->pairs;
+    s->w->pairs = *pairs;
+    *pairs = old;
+    return DEM_OK;
 }
 
 dem_status dem_broad_search(dem_world *w, dem_error *error)
 {
-    search s = {.w = w, .b = &w->bodies};
-    dem_status status = take_columns(&s) ? DEM_OK : dem_fail_memory(error);
-    if (status == DEM_OK && w->periodic)
-        dem_bodies_wrap(w, s.moved);
-    if (status == DEM_OK)
-        status = build_grids(&s, error);
-    for (uint32_t i = 0; status == DEM_OK && i < w->bodies.count; i++)
-        if (!look_from(&s, i))
-            status = dem_fail_memory(error);
-    if (status == DEM_OK)
-        status = replace_pairs(&s, error);
-    if (status == DEM_OK)
-        memcpy(w->bodies.path_then, w->bodies.path, w->bodies.count * sizeof *w->bodies.path_then);
-    free(s.near);
-    dem_arena_release(&s.arena);
-    return status;
+    search *s = w->search;
+    s->near_count = 0;
+    s->level_count = 0;
+    if (w->periodic)
+        dem_bodies_wrap(w, s->moved);
+    DEM_TRY(build_grids(s, error));
+    for (uint32_t i = 0; i < w->bodies.count; i++)
+        if (!look_from(s, i))
+            return dem_fail_memory(error);
+    DEM_TRY(replace_pairs(s, error));
+    memcpy(w->bodies.path_then, w->bodies.path, w->bodies.count * sizeof *w->bodies.path_then);
+    return DEM_OK;
 }

@@ -4,6 +4,10 @@
 
 #include "sim/state.h"
 
+/// Work space of the search. Needs the world's bodies.
+dem_status dem_search_create(dem_world *world, dem_error *error);
+void dem_search_destroy(dem_search *search);
+
 /// Finds anew all pairs whose bounding balls are nearer than the skin and keeps what is known of old ones. New pairs
 /// have no contacts yet and ask to be refreshed. Bodies are put back into a periodic domain first.
 dem_status dem_broad_search(dem_world *world, dem_error *error);

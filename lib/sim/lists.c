@@ -39,7 +39,7 @@ static dem_status check_body(const dem_world *w, size_t row, dem_error *error)
     if (!finite_body(b, row))
         return fail_body(w, row, error,
                          "is not finite; the run is unstable: take a smaller time step, or look at the contacts there");
-    double size = fmax(b->radius[row], w->skin);
+    double size = larger(b->radius[row], w->skin);
     if (body_stride(b, row, w->next_step) > 2 * size)
         return fail_body(w, row, error,
                          "runs away: it moves by more than its own size in a step; take a smaller time step");
@@ -56,7 +56,7 @@ static void bound_walls(dem_world *w)
     double radius = 0;
     for (size_t i = 0; i < w->bodies.count; i++) {
         box = box_with(box, body_position(&w->bodies, i));
-        radius = fmax(radius, w->bodies.radius[i]);
+        radius = larger(radius, w->bodies.radius[i]);
     }
     dem_vec3 centre = v3_scale(v3_add(box.low, box.high), 0.5);
     w->sweep_speed = dem_walls_speed(&w->walls, centre, box_diagonal(box) / 2 + radius + w->skin);
@@ -84,6 +84,7 @@ dem_status dem_lists_update(dem_world *w, dem_error *error)
         DEM_TRY(check_body(w, w->asked[k], error));
     if (search_due(w)) {
         DEM_TRY(dem_broad_search(w, error));
+        w->searches++;
         if (w->walls.sweep)
             bound_walls(w);
         ask_all(w);

@@ -226,7 +226,7 @@ static void view_body(dem_world *w, size_t i)
     v->scale[i] = body_scale(&w->bodies, row);
     v->mass[i] = inertia[5];
     v->position[i] = wrapped(w, body_position(&w->bodies, row));
-    v->orientation[i] = quat_multiply(body_orientation(&w->bodies, row), t->to_run);
+    v->orientation[i] = template_principal_orientation(t, body_orientation(&w->bodies, row));
     v->velocity[i] = v3_scale(v3_along(v3(p[0], p[1], p[2]), half, force), inertia[0]);
     dem_vec3 momentum = v3_along(v3(p[3], p[4], p[5]), half, moment);
     v->spin[i] = dem_body_spin(&w->bodies, row, momentum);

@@ -23,8 +23,8 @@ typedef struct dem_mesh_touches {
     size_t count, capacity;
     uint32_t *triangles;
     size_t triangle_count, triangle_capacity;
-    dem_mesh_contact *last; ///< [slots]
-    size_t last_count, last_capacity;
+    dem_mesh_contact *last; ///< [slots], in the frame of the wall
+    size_t last_capacity;
 } dem_mesh_touches;
 
 void dem_mesh_touches_release(dem_mesh_touches *touches);
@@ -34,11 +34,15 @@ void dem_mesh_touches_release(dem_mesh_touches *touches);
 bool dem_mesh_touch_search(dem_world *world, size_t row, uint32_t wall, double margin, dem_mesh_touches *touches,
                            double *slack);
 
-/// Appends a touch of another list with its triangles, at another slot. False: no memory.
+/// Appends a touch of another list with its triangles and last contacts, at another slot. False: no memory.
 bool dem_mesh_touch_copy(const dem_mesh_touches *from, const dem_mesh_touch *touch, uint32_t slot,
                          dem_mesh_touches *to);
 
-/// The contacts of the balls of the segments [begin, end) as they stand now: geometry columns and springs.
+/// Gives the touches from `from` on the last contacts that the same balls had in the old list. False: no memory.
+bool dem_mesh_touch_remember(const dem_mesh_touches *old, dem_mesh_touches *touches, size_t from);
+
+/// The contacts of the balls of the segments [begin, end) as they stand now: geometry columns and springs. Doing it
+/// again where nothing has moved changes nothing.
 void dem_mesh_touch_measure(dem_world *world, size_t begin, size_t end);
 
 #endif

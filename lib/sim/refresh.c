@@ -15,13 +15,13 @@ static const float HEIGHT_ERROR = 4e-6f;                     // of the bounding 
 static double margin_length(const dem_world *w, size_t row)
 {
     const dem_template *t = &w->templates.items[w->bodies.shape[row]];
-    return fmax(t->radius_min, REACH_SHARE * t->radius_out) * body_scale(&w->bodies, row);
+    return larger(t->radius_min, REACH_SHARE * t->radius_out) * body_scale(&w->bodies, row);
 }
 
 double dem_refresh_margin(const dem_world *w, size_t a, size_t b, double strides)
 {
-    double length = fmin(margin_length(w, a), margin_length(w, b));
-    return fmax(MARGIN_LEAST * length, fmin(MARGIN_MOST * length, HORIZON * strides));
+    double length = smaller(margin_length(w, a), margin_length(w, b));
+    return larger(MARGIN_LEAST * length, smaller(MARGIN_MOST * length, HORIZON * strides));
 }
 
 double dem_refresh_limit(const dem_world *w, size_t row)
@@ -29,9 +29,9 @@ double dem_refresh_limit(const dem_world *w, size_t row)
     const dem_pairs *pairs = &w->pairs;
     double limit = w->bodies.path_then[row] + w->skin / 2;
     if (w->bodies.wall_limit && !w->walls.sweep)
-        limit = fmin(limit, w->bodies.wall_limit[row]);
+        limit = smaller(limit, w->bodies.wall_limit[row]);
     for (size_t i = pairs->adjacency_first[row]; i < pairs->adjacency_first[row + 1]; i++)
-        limit = fmin(limit, pairs->adjacency_limit[i]);
+        limit = smaller(limit, pairs->adjacency_limit[i]);
     return limit;
 }
 
@@ -187,8 +187,8 @@ static void apply(dem_world *w, const dem_fresh *fresh, size_t index)
     double limit_a = b->path[p->a] + fresh->slack * share, limit_b = b->path[p->b] + fresh->slack * (1 - share);
     pairs->adjacency_limit[p->adjacent_a] = limit_a;
     pairs->adjacency_limit[p->adjacent_b] = limit_b;
-    b->limit[p->a] = fmin(b->limit[p->a], limit_a);
-    b->limit[p->b] = fmin(b->limit[p->b], limit_b);
+    b->limit[p->a] = smaller(b->limit[p->a], limit_a);
+    b->limit[p->b] = smaller(b->limit[p->b], limit_b);
     memcpy(p->normal, fresh->normal, sizeof p->normal);
     if (fresh->changed) {
         pairs->fresh[fresh->pair] = (uint32_t)index + 1;

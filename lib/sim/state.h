@@ -125,6 +125,8 @@ typedef struct dem_views {
     double most_energy; ///< largest of kinetic, elastic and change of potential energy seen [J]
 } dem_views;
 
+typedef struct dem_search dem_search;
+
 typedef struct dem_push {
     size_t row;
     dem_vec3 force, moment;
@@ -171,6 +173,7 @@ struct dem_world {
     uint64_t exact_then;
     double energy_start, potential_start; ///< [J]
     // work space
+    dem_search *search;
     uint32_t *asked; ///< [padded]
     size_t asked_count, *part_asked;
     size_t *parts; ///< [threads + 1] first segment of each
@@ -181,6 +184,7 @@ struct dem_world {
     size_t push_count, push_capacity;
     dem_views views;
     dem_pass_time clocks[DEM_PASSES];
+    uint64_t searches; ///< for pairs, since the world was made
     double warned[8];
     const dem_ctx *ctx;
     dem_ctx own_ctx;

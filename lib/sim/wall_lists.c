@@ -65,7 +65,7 @@ static double look_at_smooth(wall_look *look, size_t row, uint32_t wall, double 
             add_item(look, &item);
             gap = margin;
         }
-        slack = fmin(slack, gap);
+        slack = smaller(slack, gap);
     }
     return slack;
 }
@@ -111,26 +111,6 @@ static void take_springs(const dem_contacts *contacts, const dem_segment *s, siz
     }
 }
 
-// contacts of the last step at the slots of a ball that was there before
-static bool take_last(const dem_mesh_touches *old, dem_mesh_touches *touches, size_t from)
-{
-    for (size_t i = from; i < touches->count; i++) {
-        dem_mesh_touch *t = &touches->items[i];
-        size_t slots = t->slot + t->slot_count;
-        while (touches->last_capacity < slots)
-            if (!dem_grow(&touches->last, &touches->last_capacity, touches->last_capacity, sizeof *touches->last))
-                return false;
-        for (size_t k = 0; k < old->count; k++) {
-            const dem_mesh_touch *o = &old->items[k];
-            if (o->a != t->a || o->sphere != t->sphere || o->wall != t->wall)
-                continue;
-            t->last_count = o->last_count < t->slot_count ? o->last_count : t->slot_count;
-            memcpy(touches->last + t->slot, old->last + o->slot, t->last_count * sizeof *touches->last);
-        }
-    }
-    return true;
-}
-
 static bool expired(const dem_world *w, size_t row)
 {
     return !(w->bodies.path[row] + w->wall_path <= w->bodies.wall_limit[row]);
@@ -147,7 +127,7 @@ static void look_at_body(wall_look *look, size_t row, new_list *list, double *sl
             continue;
         double room = list->form == DEM_FORM_MESH ? look_at_mesh(look, row, i, margin, list->begin, &list->touches)
                                                   : look_at_smooth(look, row, i, margin);
-        *slack = fmin(*slack, room);
+        *slack = smaller(*slack, room);
     }
 }
 
@@ -193,7 +173,7 @@ static void look_at_form(wall_look *look, size_t segment, dem_wall_form form, co
             look_at_body(look, row, &list, &slack[row - rows]);
             take_springs(contacts, s, from, old, look->items + begin, look->count - begin);
             if (form == DEM_FORM_MESH && !look->failed)
-                look->failed |= !take_last(&w->mesh_touches[segment], &list.touches, touches);
+                look->failed |= !dem_mesh_touch_remember(&w->mesh_touches[segment], &list.touches, touches);
         } else {
             for (size_t k = from; k < old; k++) {
                 dem_contact_item item = dem_contact_get(&contacts->columns, segment_place(s, k));

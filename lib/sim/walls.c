@@ -112,7 +112,7 @@ double dem_walls_speed(const dem_walls *walls, dem_vec3 centre, double radius)
             continue;
         dem_vec3 spin = walls->items[i].spin;
         dem_vec3 v = v3_add(v3(row[8], row[9], row[10]), v3_cross(spin, centre));
-        speed = fmax(speed, v3_norm(v) + v3_norm(spin) * radius);
+        speed = larger(speed, v3_norm(v) + v3_norm(spin) * radius);
     }
     return speed;
 }

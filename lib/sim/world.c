@@ -7,9 +7,9 @@
 #include "sim/bodies.h"
 #include "sim/broad.h"
 #include "sim/contacts.h"
-#include "sim/fill.h"
 #include "sim/lists.h"
 #include "sim/measure.h"
+#include "sim/place.h"
 #include "sim/timestep.h"
 
 static const char *const pass_names[DEM_PASSES] = {
@@ -48,7 +48,7 @@ static dem_status copy_shapes(dem_world *w, const dem_scene *scene, dem_error *e
                 return dem_fail_memory(error);
             memcpy(w->clumps[i], shape->clump, bytes);
         } else
-            DEM_TRY(dem_template_sphere(scene, i, &w->clumps[i], error));
+            DEM_TRY(dem_sphere_clump(scene, i, &w->clumps[i], error));
     }
     return DEM_OK;
 }
@@ -131,6 +131,7 @@ static dem_status make_state(dem_world *w, const dem_scene *scene, dem_error *er
     if (w->bodies.count < THREADS_FROM)
         w->threads = 1;
     w->skin = dem_broad_skin(w);
+    DEM_TRY(dem_search_create(w, error));
     if (w->periodic)
         DEM_TRY(dem_broad_images(w, error));
     DEM_TRY(make_lists(w, error));
@@ -211,6 +212,7 @@ void dem_world_destroy(dem_world *w)
     dem_walls_release(&w->walls);
     dem_bodies_release(&w->bodies);
     dem_pairs_release(&w->pairs);
+    dem_search_destroy(w->search);
     dem_contacts_release(&w->contacts);
     for (int form = 0; form < DEM_WALL_FORMS; form++)
         dem_contacts_release(&w->wall_contacts[form]);
