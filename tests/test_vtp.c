@@ -72,7 +72,7 @@ static void cells_are_numbered_as_vtk_wants_them(void **state)
     SAME("Lines", "offsets", line_ends);
     SAME("Polys", "connectivity", corners);
     SAME("Polys", "offsets", ends);
-    SAME("CellData", "wall", WALL); // 4 vertices, 2 lines, a triangle
+    SAME("CellData", "wall", WALL);  // 4 vertices, 2 lines, a triangle
 #undef SAME
     check(!vtp_tag(&out, "FieldData", "TimeValue"));
     dem_buffer_release(&out);
@@ -81,11 +81,23 @@ static void cells_are_numbered_as_vtk_wants_them(void **state)
 static void long_lists_of_cells_are_whole(void **state)
 {
     (void)state;
-    enum { COUNT = 5000 }; // several of the writer's chunks, the last one not full
+    enum { COUNT = 5000 };  // several of the writer's chunks, the last one not full
     dem_vec3 *points = calloc(COUNT, sizeof *points);
-    dem_buffer out = put((dem_vtp){.time = NAN, .points = points, .point_count = COUNT, .vertices = true});
+    uint32_t *lines = calloc(COUNT, sizeof *lines);
     int64_t *numbers = malloc(COUNT * sizeof *numbers);
-    check(points && numbers);
+    check(points && lines && numbers);
+    for (uint32_t i = 0; i < COUNT; i++)
+        lines[i] = COUNT - 1 - i;
+    dem_buffer out = put((dem_vtp){.time = NAN,
+                                   .points = points,
+                                   .point_count = COUNT,
+                                   .vertices = true,
+                                   .lines = lines,
+                                   .line_count = COUNT / 2});
+    memcpy(numbers, vtp_array(&out, "Lines", "connectivity", "Int64", 1, COUNT * sizeof *numbers),
+           COUNT * sizeof *numbers);
+    for (int i = 0; i < COUNT; i++)
+        check(numbers[i] == COUNT - 1 - i);
     for (int shift = 0; shift < 2; shift++) {
         const char *name = shift ? "offsets" : "connectivity";
         memcpy(numbers, vtp_array(&out, "Verts", name, "Int64", 1, COUNT * sizeof *numbers), COUNT * sizeof *numbers);
@@ -93,6 +105,7 @@ static void long_lists_of_cells_are_whole(void **state)
             check(numbers[i] == i + shift);
     }
     free(numbers);
+    free(lines);
     free(points);
     dem_buffer_release(&out);
 }

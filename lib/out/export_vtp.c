@@ -12,7 +12,7 @@ static dem_status write_vtp(const dem_clump *clump, const dem_export_options *op
     dem_clump_def def = dem_clump_view(clump);
     size_t n = def.ball_count;
     dem_vec3 *points = dem_alloc(n, sizeof *points);
-    double *radii = dem_alloc(2 * n, sizeof *radii); // then the diameters
+    double *radii = dem_alloc(2 * n, sizeof *radii);  // then the diameters
     if (points && radii) {
         for (size_t i = 0; i < n; i++) {
             dem_ball b = export_ball(options, &def, def.balls[i]);

@@ -6,13 +6,13 @@
 
 #include "base/file.h"
 
-enum { CHUNK = 1024 }; // numbers of cells that are made at a time
+enum { CHUNK = 1024 };  // numbers of cells that are made at a time
 
 typedef struct writer {
     dem_buffer *out;
     const dem_vtp *vtp;
-    bool raw;        // the blocks, not the XML
-    uint64_t offset; // of the next block
+    bool raw;         // the blocks, not the XML
+    uint64_t offset;  // of the next block
 } writer;
 
 static const struct {

@@ -24,18 +24,18 @@ typedef struct dem_vtp_array {
 /// What a file holds; everything is borrowed, and what is zero is left out. Cells count in the order vertices, lines,
 /// triangles.
 typedef struct dem_vtp {
-    double time; ///< [s]; NAN: none. ParaView shows it as the time of the data
+    double time;  ///< [s]; NAN: none. ParaView shows it as the time of the data
     const dem_vtp_array *fields;
     size_t field_count;
-    const dem_vec3 *points; ///< [m]
+    const dem_vec3 *points;  ///< [m]
     size_t point_count;
     const dem_vtp_array *point_arrays;
     size_t point_array_count;
-    const char *scalars;   ///< the point array shown at first; NULL: none
-    bool vertices;         ///< every point is a cell of its own, so that filters of cells find them
-    const uint32_t *lines; ///< [2 * line_count] points
+    const char *scalars;    ///< the point array shown at first; NULL: none
+    bool vertices;          ///< every point is a cell of its own, so that filters of cells find them
+    const uint32_t *lines;  ///< [2 * line_count] points
     size_t line_count;
-    const uint32_t *triangles; ///< [3 * triangle_count] points
+    const uint32_t *triangles;  ///< [3 * triangle_count] points
     size_t triangle_count;
     const dem_vtp_array *cell_arrays;
     size_t cell_array_count;
