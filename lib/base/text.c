@@ -10,6 +10,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/digits.h"
+
 enum { EXACT_DIGITS = 15, EXACT_POWER = 22, LOSSLESS_DIGITS = 17, NUMBER_TEXT = 64 };
 
 static const double powers_of_ten[EXACT_POWER + 1] = {1e0,  1e1,  1e2,  1e3,  1e4,  1e5,  1e6,  1e7,
@@ -160,6 +162,8 @@ void dem_buffer_print(dem_buffer *buffer, const char *format, ...)
 
 char *dem_format_double(char *text, size_t size, double value, int digits)
 {
+    if (dem_digits_print(text, size, value, digits))
+        return text;
     snprintf(text, size, "%.*g", digits, value);
     for (char *p = text; *p; p++)
         if (*p == ',')
