@@ -41,6 +41,41 @@ static void random_numbers_survive_printing_and_reading(void **state)
     }
 }
 
+static void the_shortest_text_is_read_back_without_loss(void **state)
+{
+    (void)state;
+    static const struct {
+        double value;
+        const char *text;
+    } cases[] = {{0, "0"},
+                 {-0.0, "-0"},
+                 {0.1, "0.1"},
+                 {1e-5, "1e-05"},
+                 {1.0 / 3, "0.3333333333333333"},
+                 {NAN, "nan"},
+                 {-NAN, "nan"},
+                 {INFINITY, "inf"},
+                 {0.005, "0.005"},
+                 {-1e300, "-1e+300"},
+                 {2e-3, "0.002"},
+                 {0.1 + 0.2, "0.30000000000000004"}};
+    for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
+        dem_buffer out = {0};
+        dem_buffer_shortest(&out, cases[i].value);
+        assert_string_equal(out.data, cases[i].text);
+        dem_buffer_release(&out);
+    }
+    dem_random r = random_stream(3, 4);
+    for (int i = 0; i < 20000; i++) {
+        double want = (random_uniform(&r) - 0.5) * pow(10, 600 * (random_uniform(&r) - 0.5));
+        dem_buffer out = {0};
+        dem_buffer_shortest(&out, want);
+        double got = parsed(out.data);
+        assert_memory_equal(&got, &want, sizeof got);
+        dem_buffer_release(&out);
+    }
+}
+
 static void what_is_no_number_is_refused(void **state)
 {
     (void)state;
@@ -82,6 +117,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(numbers_are_read_as_strtod_reads_them),
         cmocka_unit_test(random_numbers_survive_printing_and_reading),
+        cmocka_unit_test(the_shortest_text_is_read_back_without_loss),
         cmocka_unit_test(what_is_no_number_is_refused),
         cmocka_unit_test(a_number_ends_where_the_text_ends),
         cmocka_unit_test(a_german_locale_changes_nothing),

@@ -10,7 +10,9 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { EXACT_DIGITS = 15, EXACT_POWER = 22, NUMBER_TEXT = 64 };
+#include "base/digits.h"
+
+enum { EXACT_DIGITS = 15, EXACT_POWER = 22, LOSSLESS_DIGITS = 17, NUMBER_TEXT = 64 };
 
 static const double powers_of_ten[EXACT_POWER + 1] = {1e0,  1e1,  1e2,  1e3,  1e4,  1e5,  1e6,  1e7,
                                                       1e8,  1e9,  1e10, 1e11, 1e12, 1e13, 1e14, 1e15,
@@ -160,6 +162,8 @@ void dem_buffer_print(dem_buffer *buffer, const char *format, ...)
 
 char *dem_format_double(char *text, size_t size, double value, int digits)
 {
+    if (dem_digits_print(text, size, value, digits))
+        return text;
     snprintf(text, size, "%.*g", digits, value);
     for (char *p = text; *p; p++)
         if (*p == ',')
@@ -171,6 +175,17 @@ void dem_buffer_number(dem_buffer *buffer, double value, int digits)
 {
     char text[NUMBER_TEXT];
     dem_buffer_text(buffer, dem_format_double(text, sizeof text, value, digits));
+}
+
+void dem_buffer_shortest(dem_buffer *buffer, double value)
+{
+    char text[NUMBER_TEXT] = "nan";
+    double back = NAN;
+    for (int digits = EXACT_DIGITS; digits <= LOSSLESS_DIGITS && !isnan(value) && back != value; digits++) {
+        dem_format_double(text, sizeof text, value, digits);
+        dem_parse_double(text, text + strlen(text), &back);
+    }
+    dem_buffer_text(buffer, text);
 }
 
 void dem_buffer_release(dem_buffer *buffer)

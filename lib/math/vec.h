@@ -55,14 +55,23 @@ static inline dem_vec3 v3_unit(dem_vec3 a)
     double n = v3_norm(a);
     return n > 0 ? v3_scale(a, 1 / n) : v3(0, 0, 1);
 }
-/// Smaller and larger components, those of a where b is not a number (fmin and fmax would be library calls).
+/// The smaller and the larger of two numbers, a where b is none (fmin and fmax would be library calls).
+static inline double smaller(double a, double b)
+{
+    return b < a ? b : a;
+}
+static inline double larger(double a, double b)
+{
+    return b > a ? b : a;
+}
+/// Smaller and larger components.
 static inline dem_vec3 v3_min(dem_vec3 a, dem_vec3 b)
 {
-    return v3(b.x < a.x ? b.x : a.x, b.y < a.y ? b.y : a.y, b.z < a.z ? b.z : a.z);
+    return v3(smaller(a.x, b.x), smaller(a.y, b.y), smaller(a.z, b.z));
 }
 static inline dem_vec3 v3_max(dem_vec3 a, dem_vec3 b)
 {
-    return v3(b.x > a.x ? b.x : a.x, b.y > a.y ? b.y : a.y, b.z > a.z ? b.z : a.z);
+    return v3(larger(a.x, b.x), larger(a.y, b.y), larger(a.z, b.z));
 }
 /// Component 0, 1 or 2.
 static inline double v3_get(dem_vec3 a, int axis)

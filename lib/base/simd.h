@@ -1,0 +1,520 @@
+/// Wide numbers: a few doubles or floats taken through the same arithmetic at once. The one place with intrinsics.
+///
+/// The width follows the instruction set the file is compiled for: 8 doubles (AVX-512), 4 (AVX2) or 1 (anything). All
+/// widths give the same bits: + - * / and sqrt are rounded alike everywhere, nothing is fused, and what depends on an
+/// order is defined on blocks of DEM_BLOCK_LANES whatever the width.
+///
+/// Rows are 8 doubles on a 64-byte boundary. `rows_*` turns 8 rows (or DEM_WIDTH of them) into 8 columns and back.
+#ifndef DEM_BASE_SIMD_H
+#define DEM_BASE_SIMD_H
+
+#include <math.h>
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <string.h>
+
+#define DEM_INLINE static inline __attribute__((always_inline))
+
+enum { DEM_BLOCK_LANES = 8 }; ///< lanes on which orders of summation are defined
+
+#if defined(__AVX512F__) && defined(__AVX512DQ__) && defined(__AVX512VL__)
+#include <immintrin.h>
+enum { DEM_WIDTH = 8, DEM_WIDTH_FLOAT = 16 };
+typedef __m512d wide;
+typedef __mmask8 wide_mask;
+typedef __m512 widef;
+
+DEM_INLINE wide wide_all(double x)
+{
+    return _mm512_set1_pd(x);
+}
+DEM_INLINE wide wide_load(const double *p)
+{
+    return _mm512_loadu_pd(p);
+}
+DEM_INLINE void wide_store(double *p, wide a)
+{
+    _mm512_storeu_pd(p, a);
+}
+DEM_INLINE wide wide_sqrt(wide a)
+{
+    return _mm512_sqrt_pd(a);
+}
+DEM_INLINE wide wide_abs(wide a)
+{
+    return _mm512_abs_pd(a);
+}
+DEM_INLINE wide wide_max(wide a, wide b)
+{
+    return _mm512_max_pd(a, b);
+}
+DEM_INLINE wide wide_min(wide a, wide b)
+{
+    return _mm512_min_pd(a, b);
+}
+DEM_INLINE wide_mask wide_less(wide a, wide b)
+{
+    return _mm512_cmp_pd_mask(a, b, _CMP_LT_OQ);
+}
+DEM_INLINE wide_mask wide_not_le(wide a, wide b)
+{
+    return _mm512_cmp_pd_mask(a, b, _CMP_NLE_UQ);
+}
+DEM_INLINE wide wide_select(wide_mask m, wide a, wide b)
+{
+    return _mm512_mask_blend_pd(m, b, a);
+}
+DEM_INLINE wide wide_or_zero(wide_mask m, wide a)
+{
+    return _mm512_maskz_mov_pd(m, a);
+}
+DEM_INLINE wide_mask wide_and(wide_mask a, wide_mask b)
+{
+    return a & b;
+}
+DEM_INLINE wide_mask wide_either(wide_mask a, wide_mask b)
+{
+    return a | b;
+}
+DEM_INLINE unsigned wide_bits(wide_mask m)
+{
+    return m;
+}
+
+// pairs of half rows: {low of p, low of q}
+DEM_INLINE wide halves(const double *p, const double *q)
+{
+    return _mm512_insertf64x4(_mm512_castpd256_pd512(_mm256_load_pd(p)), _mm256_load_pd(q), 1);
+}
+// four columns of eight half rows
+DEM_INLINE void columns4(const double *const *row, wide *out)
+{
+    wide z0 = halves(row[0], row[2]), z1 = halves(row[1], row[3]), z2 = halves(row[4], row[6]);
+    wide z3 = halves(row[5], row[7]);
+    wide a = _mm512_unpacklo_pd(z0, z1), b = _mm512_unpackhi_pd(z0, z1);
+    wide c = _mm512_unpacklo_pd(z2, z3), d = _mm512_unpackhi_pd(z2, z3);
+    out[0] = _mm512_shuffle_f64x2(a, c, 0x88);
+    out[1] = _mm512_shuffle_f64x2(b, d, 0x88);
+    out[2] = _mm512_shuffle_f64x2(a, c, 0xdd);
+    out[3] = _mm512_shuffle_f64x2(b, d, 0xdd);
+}
+DEM_INLINE void transpose8(wide *r)
+{
+    wide t[8], u[8];
+    for (int i = 0; i < 4; i++) {
+        t[2 * i] = _mm512_unpacklo_pd(r[2 * i], r[2 * i + 1]);
+        t[2 * i + 1] = _mm512_unpackhi_pd(r[2 * i], r[2 * i + 1]);
+    }
+    for (int i = 0; i < 2; i++) {
+        u[4 * i] = _mm512_shuffle_f64x2(t[4 * i], t[4 * i + 2], 0x88);
+        u[4 * i + 1] = _mm512_shuffle_f64x2(t[4 * i + 1], t[4 * i + 3], 0x88);
+        u[4 * i + 2] = _mm512_shuffle_f64x2(t[4 * i], t[4 * i + 2], 0xdd);
+        u[4 * i + 3] = _mm512_shuffle_f64x2(t[4 * i + 1], t[4 * i + 3], 0xdd);
+    }
+    for (int i = 0; i < 4; i++) {
+        r[i] = _mm512_shuffle_f64x2(u[i], u[4 + i], 0x88);
+        r[4 + i] = _mm512_shuffle_f64x2(u[i], u[4 + i], 0xdd);
+    }
+}
+DEM_INLINE void rows_load4(const double *base, size_t stride, const uint32_t *index, wide out[4])
+{
+    const double *row[8];
+    for (int i = 0; i < 8; i++)
+        row[i] = base + stride * index[i];
+    columns4(row, out);
+}
+DEM_INLINE void rows_load(const double *base, size_t stride, const uint32_t *index, wide out[8])
+{
+    const double *low[8], *high[8];
+    for (int i = 0; i < 8; i++) {
+        low[i] = base + stride * index[i];
+        high[i] = low[i] + 4;
+    }
+    columns4(low, out);
+    columns4(high, out + 4);
+}
+DEM_INLINE void rows_load_next(const double *base, size_t stride, wide out[8])
+{
+    const double *low[8], *high[8];
+    for (int i = 0; i < 8; i++) {
+        low[i] = base + stride * (size_t)i;
+        high[i] = low[i] + 4;
+    }
+    columns4(low, out);
+    columns4(high, out + 4);
+}
+DEM_INLINE void rows_store_next(double *base, size_t stride, wide *columns)
+{
+    transpose8(columns);
+    for (int i = 0; i < 8; i++)
+        _mm512_store_pd(base + stride * (size_t)i, columns[i]);
+}
+// one row after the other: an index may stand twice
+DEM_INLINE void rows_add(double *base, const uint32_t *index, wide *columns)
+{
+    transpose8(columns);
+    for (int i = 0; i < 8; i++) {
+        double *p = base + 8 * (size_t)index[i];
+        _mm512_store_pd(p, _mm512_add_pd(_mm512_load_pd(p), columns[i]));
+    }
+}
+
+DEM_INLINE widef widef_all(float x)
+{
+    return _mm512_set1_ps(x);
+}
+DEM_INLINE widef widef_load(const float *p)
+{
+    return _mm512_loadu_ps(p);
+}
+DEM_INLINE void widef_store(float *p, widef a)
+{
+    _mm512_storeu_ps(p, a);
+}
+DEM_INLINE widef widef_max(widef a, widef b)
+{
+    return _mm512_max_ps(a, b);
+}
+DEM_INLINE widef widef_min(widef a, widef b)
+{
+    return _mm512_min_ps(a, b);
+}
+DEM_INLINE widef widef_sqrt(widef a)
+{
+    return _mm512_sqrt_ps(a);
+}
+DEM_INLINE uint32_t widef_less(widef a, widef b)
+{
+    return _mm512_cmp_ps_mask(a, b, _CMP_LT_OQ);
+}
+DEM_INLINE float widef_highest(widef a)
+{
+    return _mm512_reduce_max_ps(a);
+}
+DEM_INLINE float widef_lowest(widef a)
+{
+    return _mm512_reduce_min_ps(a);
+}
+DEM_INLINE void widef_pack(float *p, uint32_t bits, widef a)
+{
+    _mm512_mask_compressstoreu_ps(p, (__mmask16)bits, a);
+}
+DEM_INLINE void indices_pack(uint32_t *p, uint32_t bits, uint32_t first)
+{
+    const __m512i ramp = _mm512_setr_epi32(0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15);
+    _mm512_mask_compressstoreu_epi32(p, (__mmask16)bits, _mm512_add_epi32(ramp, _mm512_set1_epi32((int)first)));
+}
+
+#elif defined(__AVX2__)
+#include <immintrin.h>
+enum { DEM_WIDTH = 4, DEM_WIDTH_FLOAT = 8 };
+typedef __m256d wide;
+typedef __m256d wide_mask;
+typedef __m256 widef;
+
+DEM_INLINE wide wide_all(double x)
+{
+    return _mm256_set1_pd(x);
+}
+DEM_INLINE wide wide_load(const double *p)
+{
+    return _mm256_loadu_pd(p);
+}
+DEM_INLINE void wide_store(double *p, wide a)
+{
+    _mm256_storeu_pd(p, a);
+}
+DEM_INLINE wide wide_sqrt(wide a)
+{
+    return _mm256_sqrt_pd(a);
+}
+DEM_INLINE wide wide_abs(wide a)
+{
+    return _mm256_andnot_pd(_mm256_set1_pd(-0.0), a);
+}
+DEM_INLINE wide wide_max(wide a, wide b)
+{
+    return _mm256_max_pd(a, b);
+}
+DEM_INLINE wide wide_min(wide a, wide b)
+{
+    return _mm256_min_pd(a, b);
+}
+DEM_INLINE wide_mask wide_less(wide a, wide b)
+{
+    return _mm256_cmp_pd(a, b, _CMP_LT_OQ);
+}
+DEM_INLINE wide_mask wide_not_le(wide a, wide b)
+{
+    return _mm256_cmp_pd(a, b, _CMP_NLE_UQ);
+}
+DEM_INLINE wide wide_select(wide_mask m, wide a, wide b)
+{
+    return _mm256_blendv_pd(b, a, m);
+}
+DEM_INLINE wide wide_or_zero(wide_mask m, wide a)
+{
+    return _mm256_and_pd(m, a);
+}
+DEM_INLINE wide_mask wide_and(wide_mask a, wide_mask b)
+{
+    return _mm256_and_pd(a, b);
+}
+DEM_INLINE wide_mask wide_either(wide_mask a, wide_mask b)
+{
+    return _mm256_or_pd(a, b);
+}
+DEM_INLINE unsigned wide_bits(wide_mask m)
+{
+    return (unsigned)_mm256_movemask_pd(m);
+}
+
+DEM_INLINE void transpose4(wide *r)
+{
+    wide a = _mm256_unpacklo_pd(r[0], r[1]), b = _mm256_unpackhi_pd(r[0], r[1]);
+    wide c = _mm256_unpacklo_pd(r[2], r[3]), d = _mm256_unpackhi_pd(r[2], r[3]);
+    r[0] = _mm256_permute2f128_pd(a, c, 0x20);
+    r[1] = _mm256_permute2f128_pd(b, d, 0x20);
+    r[2] = _mm256_permute2f128_pd(a, c, 0x31);
+    r[3] = _mm256_permute2f128_pd(b, d, 0x31);
+}
+DEM_INLINE void rows_load4(const double *base, size_t stride, const uint32_t *index, wide out[4])
+{
+    for (int i = 0; i < 4; i++)
+        out[i] = _mm256_load_pd(base + stride * index[i]);
+    transpose4(out);
+}
+DEM_INLINE void rows_load(const double *base, size_t stride, const uint32_t *index, wide out[8])
+{
+    rows_load4(base, stride, index, out);
+    rows_load4(base + 4, stride, index, out + 4);
+}
+DEM_INLINE void rows_load_next(const double *base, size_t stride, wide out[8])
+{
+    for (int half = 0; half < 2; half++) {
+        for (int i = 0; i < 4; i++)
+            out[4 * half + i] = _mm256_load_pd(base + stride * (size_t)i + 4 * half);
+        transpose4(out + 4 * half);
+    }
+}
+DEM_INLINE void rows_store_next(double *base, size_t stride, wide *columns)
+{
+    for (int half = 0; half < 2; half++) {
+        transpose4(columns + 4 * half);
+        for (int i = 0; i < 4; i++)
+            _mm256_store_pd(base + stride * (size_t)i + 4 * half, columns[4 * half + i]);
+    }
+}
+DEM_INLINE void rows_add(double *base, const uint32_t *index, wide *columns)
+{
+    transpose4(columns);
+    transpose4(columns + 4);
+    for (int i = 0; i < 4; i++) {
+        double *p = base + 8 * (size_t)index[i];
+        _mm256_store_pd(p, _mm256_add_pd(_mm256_load_pd(p), columns[i]));
+        _mm256_store_pd(p + 4, _mm256_add_pd(_mm256_load_pd(p + 4), columns[4 + i]));
+    }
+}
+
+DEM_INLINE widef widef_all(float x)
+{
+    return _mm256_set1_ps(x);
+}
+DEM_INLINE widef widef_load(const float *p)
+{
+    return _mm256_loadu_ps(p);
+}
+DEM_INLINE void widef_store(float *p, widef a)
+{
+    _mm256_storeu_ps(p, a);
+}
+DEM_INLINE widef widef_max(widef a, widef b)
+{
+    return _mm256_max_ps(a, b);
+}
+DEM_INLINE widef widef_min(widef a, widef b)
+{
+    return _mm256_min_ps(a, b);
+}
+DEM_INLINE widef widef_sqrt(widef a)
+{
+    return _mm256_sqrt_ps(a);
+}
+DEM_INLINE uint32_t widef_less(widef a, widef b)
+{
+    return (uint32_t)_mm256_movemask_ps(_mm256_cmp_ps(a, b, _CMP_LT_OQ));
+}
+DEM_INLINE float widef_highest(widef a)
+{
+    __m128 h = _mm_max_ps(_mm256_castps256_ps128(a), _mm256_extractf128_ps(a, 1));
+    h = _mm_max_ps(h, _mm_movehl_ps(h, h));
+    return _mm_cvtss_f32(_mm_max_ss(h, _mm_shuffle_ps(h, h, 1)));
+}
+DEM_INLINE float widef_lowest(widef a)
+{
+    __m128 h = _mm_min_ps(_mm256_castps256_ps128(a), _mm256_extractf128_ps(a, 1));
+    h = _mm_min_ps(h, _mm_movehl_ps(h, h));
+    return _mm_cvtss_f32(_mm_min_ss(h, _mm_shuffle_ps(h, h, 1)));
+}
+DEM_INLINE void widef_pack(float *p, uint32_t bits, widef a)
+{
+    float lane[8];
+    _mm256_storeu_ps(lane, a);
+    for (; bits; bits &= bits - 1)
+        *p++ = lane[__builtin_ctz(bits)];
+}
+DEM_INLINE void indices_pack(uint32_t *p, uint32_t bits, uint32_t first)
+{
+    for (; bits; bits &= bits - 1)
+        *p++ = first + (uint32_t)__builtin_ctz(bits);
+}
+
+#else
+enum { DEM_WIDTH = 1, DEM_WIDTH_FLOAT = 1 };
+typedef double wide;
+typedef bool wide_mask;
+typedef float widef;
+
+DEM_INLINE wide wide_all(double x)
+{
+    return x;
+}
+DEM_INLINE wide wide_load(const double *p)
+{
+    return *p;
+}
+DEM_INLINE void wide_store(double *p, wide a)
+{
+    *p = a;
+}
+DEM_INLINE wide wide_sqrt(wide a)
+{
+    return sqrt(a);
+}
+DEM_INLINE wide wide_abs(wide a)
+{
+    return fabs(a);
+}
+DEM_INLINE wide wide_max(wide a, wide b)
+{
+    return a > b ? a : b;
+} // as the instructions have it: b if unordered
+DEM_INLINE wide wide_min(wide a, wide b)
+{
+    return a < b ? a : b;
+}
+DEM_INLINE wide_mask wide_less(wide a, wide b)
+{
+    return a < b;
+}
+DEM_INLINE wide_mask wide_not_le(wide a, wide b)
+{
+    return !(a <= b);
+}
+DEM_INLINE wide wide_select(wide_mask m, wide a, wide b)
+{
+    return m ? a : b;
+}
+DEM_INLINE wide wide_or_zero(wide_mask m, wide a)
+{
+    return m ? a : 0;
+}
+DEM_INLINE wide_mask wide_and(wide_mask a, wide_mask b)
+{
+    return a && b;
+}
+DEM_INLINE wide_mask wide_either(wide_mask a, wide_mask b)
+{
+    return a || b;
+}
+DEM_INLINE unsigned wide_bits(wide_mask m)
+{
+    return m;
+}
+
+DEM_INLINE void rows_load4(const double *base, size_t stride, const uint32_t *index, wide out[4])
+{
+    memcpy(out, base + stride * *index, 4 * sizeof *out);
+}
+DEM_INLINE void rows_load(const double *base, size_t stride, const uint32_t *index, wide out[8])
+{
+    memcpy(out, base + stride * *index, 8 * sizeof *out);
+}
+DEM_INLINE void rows_load_next(const double *base, size_t stride, wide out[8])
+{
+    (void)stride;
+    memcpy(out, base, 8 * sizeof *out);
+}
+DEM_INLINE void rows_store_next(double *base, size_t stride, wide *columns)
+{
+    (void)stride;
+    memcpy(base, columns, 8 * sizeof *columns);
+}
+DEM_INLINE void rows_add(double *base, const uint32_t *index, wide *columns)
+{
+    for (int k = 0; k < 8; k++)
+        base[8 * (size_t)*index + (size_t)k] += columns[k];
+}
+
+DEM_INLINE widef widef_all(float x)
+{
+    return x;
+}
+DEM_INLINE widef widef_load(const float *p)
+{
+    return *p;
+}
+DEM_INLINE void widef_store(float *p, widef a)
+{
+    *p = a;
+}
+DEM_INLINE widef widef_max(widef a, widef b)
+{
+    return a > b ? a : b;
+}
+DEM_INLINE widef widef_min(widef a, widef b)
+{
+    return a < b ? a : b;
+}
+DEM_INLINE widef widef_sqrt(widef a)
+{
+    return sqrtf(a);
+}
+DEM_INLINE uint32_t widef_less(widef a, widef b)
+{
+    return a < b;
+}
+DEM_INLINE float widef_highest(widef a)
+{
+    return a;
+}
+DEM_INLINE float widef_lowest(widef a)
+{
+    return a;
+}
+DEM_INLINE void widef_pack(float *p, uint32_t bits, widef a)
+{
+    if (bits)
+        *p = a;
+}
+DEM_INLINE void indices_pack(uint32_t *p, uint32_t bits, uint32_t first)
+{
+    if (bits)
+        *p = first;
+}
+#endif
+
+/// 1 / sqrt(a); 1e150 for 0. (A reciprocal root by Newton steps from an integer guess was no faster than the divider.)
+DEM_INLINE wide wide_rsqrt(wide a)
+{
+    return wide_all(1) / wide_sqrt(a + wide_all(1e-300));
+}
+
+/// The lanes behind `count`, of DEM_WIDTH_FLOAT, taken out.
+DEM_INLINE uint32_t first_lanes(uint32_t bits, size_t count)
+{
+    return count >= DEM_WIDTH_FLOAT ? bits : bits & ((1u << count) - 1);
+}
+
+#endif

@@ -1,0 +1,526 @@
+// Bodies are sorted by cell, x fastest, so that three neighbouring cells are one run of memory. The grid is closed on
+// itself: far cells may share a place, which costs a comparison, but memory stays in proportion to the bodies however
+// far they are apart. A body looks for partners in the grid of its own size, behind it in order, and in those of larger
+// ones.
+#include "sim/broad.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/status.h"
+#include "sim/bodies.h"
+
+enum { LEVELS = 24, CELLS_LEAST = 4 };
+
+static const double SKIN = 0.2; // of the mean bounding radius; flat from 0.1 to 0.4
+
+typedef struct level {
+    double cell, radius; // edge of a cell, largest radius [m]
+    uint32_t dims[3];    // powers of two
+    size_t begin, end;   // in the sorted columns
+    uint32_t *start;     // [cells + 2]
+    size_t start_capacity;
+} level;
+
+typedef struct near_pair {
+    uint32_t a, b, image;
+} near_pair;
+
+typedef struct pair_limits {
+    double a, b;
+} pair_limits;
+
+/// Kept from one search to the next, as fresh memory would cost more than the search.
+struct dem_search {
+    dem_world *w;
+    level levels[LEVELS];
+    int level_count;
+    dem_box box;
+    double pad;           // of distances in 32 bits [m]
+    float *x, *y, *z, *r; // sorted by level and cell
+    uint32_t *id, *cell, *found;
+    uint8_t *level_of;
+    int32_t *moved;
+    near_pair *near, *sorted;
+    size_t near_count, near_capacity, sorted_capacity;
+    pair_limits *limits;
+    size_t limit_capacity;
+    dem_pairs spare; // to be filled while the old ones are still read
+};
+typedef struct dem_search search;
+
+double dem_broad_skin(const dem_world *w)
+{
+    double sum = 0;
+    for (size_t i = 0; i < w->bodies.count; i++)
+        sum += w->bodies.radius[i];
+    return w->bodies.count ? SKIN * sum / (double)w->bodies.count : 0;
+}
+
+dem_status dem_broad_images(dem_world *w, dem_error *error)
+{
+    double side[3], largest = 0;
+    for (size_t i = 0; i < w->bodies.count; i++)
+        largest = larger(largest, w->bodies.radius[i]);
+    for (int k = 0; k < 3; k++) {
+        side[k] = w->domain.periodic[k] ? v3_get(w->domain.high, k) - v3_get(w->domain.low, k) : 0;
+        if (w->domain.periodic[k] && side[k] * (DEM_IMAGES_ASIDE - 1) < 2 * largest + w->skin)
+            return dem_fail(error, DEM_BAD_INPUT,
+                            "the domain is periodic over %g m, too short for a body of %g m; make that side longer",
+                            side[k], 2 * largest);
+    }
+    w->shifts = aligned_alloc(64, (DEM_IMAGES * 4 * sizeof *w->shifts + 63) / 64 * 64);
+    if (!w->shifts)
+        return dem_fail_memory(error);
+    for (uint32_t i = 0; i < DEM_IMAGES; i++) {
+        int image[3];
+        image_of(i, image);
+        for (int k = 0; k < 3; k++)
+            w->shifts[4 * i + (uint32_t)k] = image[k] * side[k];
+        w->shifts[4 * i + 3] = 0;
+    }
+    return DEM_OK;
+}
+
+// ---- grids
+
+static uint32_t power_of_two(double at_least)
+{
+    uint32_t n = CELLS_LEAST;
+    while (n < at_least && n < 1u << 20)
+        n *= 2;
+    return n;
+}
+
+static bool make_level(search *s, level *l, size_t bodies)
+{
+    for (int k = 0; k < 3; k++)
+        l->dims[k] = power_of_two((v3_get(s->box.high, k) - v3_get(s->box.low, k)) / l->cell + 2);
+    while ((double)l->dims[0] * l->dims[1] * l->dims[2] > 4.0 * (double)bodies + 64) {
+        int longest = l->dims[1] > l->dims[0] ? 1 : 0;
+        longest = l->dims[2] > l->dims[longest] ? 2 : longest;
+        if (l->dims[longest] == CELLS_LEAST)
+            break;
+        l->dims[longest] /= 2;
+    }
+    size_t cells = (size_t)l->dims[0] * l->dims[1] * l->dims[2] + 2;
+    if (cells > l->start_capacity) {
+        free(l->start);
+        l->start = dem_alloc(cells, sizeof *l->start);
+        l->start_capacity = l->start ? cells : 0;
+    }
+    if (l->start)
+        memset(l->start, 0, cells * sizeof *l->start);
+    return l->start;
+}
+
+static void cell_of(const search *s, const level *l, dem_vec3 x, int32_t cell[3])
+{
+    for (int k = 0; k < 3; k++) {
+        // whole numbers, however far it is
+        double at = larger(smaller((v3_get(x, k) - v3_get(s->box.low, k)) / l->cell, 9e15), -9e15);
+        int64_t whole = (int64_t)at;
+        whole -= at < (double)whole;
+        cell[k] = (int32_t)(whole & (int64_t)(l->dims[k] - 1));
+    }
+}
+
+static size_t cell_index(const level *l, int32_t x, int32_t y, int32_t z)
+{
+    uint32_t cx = (uint32_t)x & (l->dims[0] - 1), cy = (uint32_t)y & (l->dims[1] - 1),
+             cz = (uint32_t)z & (l->dims[2] - 1);
+    return ((size_t)cz * l->dims[1] + cy) * l->dims[0] + cx;
+}
+
+dem_status dem_search_create(dem_world *w, dem_error *error)
+{
+    search *s = w->search = dem_alloc_zero(1, sizeof *s);
+    if (!s)
+        return dem_fail_memory(error);
+    size_t n = w->bodies.count, room = n + 2 * DEM_WIDTH_FLOAT + 32;
+    s->w = w;
+    s->x = dem_alloc_zero(room, sizeof *s->x);
+    s->y = dem_alloc_zero(room, sizeof *s->y);
+    s->z = dem_alloc_zero(room, sizeof *s->z);
+    s->r = dem_alloc_zero(room, sizeof *s->r);
+    s->id = dem_alloc_zero(room, sizeof *s->id);
+    s->cell = dem_alloc(n + 1, sizeof *s->cell);
+    s->found = dem_alloc(2 * room, sizeof *s->found);
+    s->level_of = dem_alloc(n + 1, sizeof *s->level_of);
+    s->moved = dem_alloc_zero(3 * n + 3, sizeof *s->moved);
+    bool good = s->x && s->y && s->z && s->r && s->id && s->cell && s->found && s->level_of && s->moved;
+    return good ? DEM_OK : dem_fail_memory(error);
+}
+
+void dem_search_destroy(dem_search *s)
+{
+    if (!s)
+        return;
+    void *all[] = {s->x,     s->y,        s->z,     s->r,    s->id,     s->cell,
+                   s->found, s->level_of, s->moved, s->near, s->sorted, s->limits};
+    for (size_t i = 0; i < sizeof all / sizeof *all; i++)
+        free(all[i]);
+    for (int i = 0; i < LEVELS; i++)
+        free(s->levels[i].start);
+    dem_pairs_release(&s->spare);
+    free(s);
+}
+
+// sizes within a factor of two share a grid
+static void sort_by_size(search *s, size_t counts[LEVELS])
+{
+    const dem_bodies *b = &s->w->bodies;
+    double smallest = INFINITY, largest[LEVELS] = {0};
+    size_t sizes[LEVELS] = {0};
+    int rank[LEVELS];
+    for (size_t i = 0; i < b->count; i++)
+        smallest = smaller(smallest, b->radius[i]);
+    for (size_t i = 0; i < b->count; i++) {
+        int octave = (int)smaller(log2(b->radius[i] / smallest) + 1e-9, LEVELS - 1);
+        s->level_of[i] = (uint8_t)octave;
+        sizes[octave]++;
+        largest[octave] = larger(largest[octave], b->radius[i]);
+    }
+    for (int k = 0; k < LEVELS; k++)
+        if (sizes[k]) {
+            rank[k] = s->level_count;
+            counts[s->level_count] = sizes[k];
+            level *l = &s->levels[s->level_count++];
+            l->cell = 2 * largest[k] + s->w->skin + s->pad;
+            l->radius = largest[k];
+        }
+    for (size_t i = 0; i < b->count; i++)
+        s->level_of[i] = (uint8_t)rank[s->level_of[i]];
+}
+
+static dem_status build_grids(search *s, dem_error *error)
+{
+    const dem_bodies *b = &s->w->bodies;
+    size_t counts[LEVELS];
+    s->box = box_empty();
+    double largest = 0;
+    for (size_t i = 0; i < b->count; i++) {
+        s->box = box_with(s->box, body_position(b, i));
+        largest = larger(largest, b->radius[i]);
+    }
+    // positions are rounded to 32 bits with respect to the corner of the box
+    s->pad = 4e-7 * (box_diagonal(s->box) + 4 * largest);
+    sort_by_size(s, counts);
+    size_t begin = 0;
+    for (int k = 0; k < s->level_count; k++) {
+        if (!make_level(s, &s->levels[k], counts[k]))
+            return dem_fail_memory(error);
+        s->levels[k].begin = begin;
+        s->levels[k].end = begin += counts[k];
+    }
+    for (size_t i = 0; i < b->count; i++) {
+        level *l = &s->levels[s->level_of[i]];
+        int32_t c[3];
+        cell_of(s, l, body_position(b, i), c);
+        s->cell[i] = (uint32_t)cell_index(l, c[0], c[1], c[2]);
+        l->start[s->cell[i] + 2]++;
+    }
+    for (int k = 0; k < s->level_count; k++) {
+        level *l = &s->levels[k];
+        size_t cells = (size_t)l->dims[0] * l->dims[1] * l->dims[2];
+        l->start[0] = l->start[1] = (uint32_t)l->begin;
+        for (size_t c = 2; c < cells + 2; c++)
+            l->start[c] += l->start[c - 1];
+    }
+    for (size_t i = 0; i < b->count; i++) {
+        uint32_t at = s->levels[s->level_of[i]].start[s->cell[i] + 1]++;
+        dem_vec3 x = v3_sub(body_position(b, i), s->box.low);
+        s->id[at] = (uint32_t)i;
+        s->x[at] = (float)x.x;
+        s->y[at] = (float)x.y;
+        s->z[at] = (float)x.z;
+        s->r[at] = (float)b->radius[i];
+    }
+    return DEM_OK;
+}
+
+// ---- queries
+
+// candidates of a ball in one grid: ids in s->found
+static size_t look_around(search *s, const level *l, dem_vec3 x, double reach)
+{
+    dem_vec3 from = v3_sub(x, s->box.low);
+    dem_scan_job job = {.x = s->x,
+                        .y = s->y,
+                        .z = s->z,
+                        .r = s->r,
+                        .id = s->id,
+                        .centre = {(float)from.x, (float)from.y, (float)from.z},
+                        .reach = (float)((reach + s->pad) * (1 + 1e-6)),
+                        .found = s->found};
+    int32_t c[3];
+    cell_of(s, l, x, c);
+    bool row = c[0] > 0 && (uint32_t)c[0] + 1 < l->dims[0];
+    for (int dz = -1; dz <= 1; dz++)
+        for (int dy = -1; dy <= 1; dy++)
+            for (int dx = row ? 0 : -1; dx <= (row ? 0 : 1); dx++) {
+                size_t at = cell_index(l, c[0] + dx, c[1] + dy, c[2] + dz);
+                job.begin = l->start[row ? at - 1 : at];
+                job.end = l->start[(row ? at + 1 : at) + 1];
+                if (job.begin < job.end)
+                    s->w->kernels->scan(&job);
+            }
+    return job.count;
+}
+
+// memory for `count` items, whose old content is not needed
+static bool make_room(void *array, size_t *capacity, size_t count, size_t size)
+{
+    void **p = array;
+    if (count <= *capacity && *p)
+        return true;
+    free(*p);
+    *capacity = count + count / 8;
+    *p = dem_alloc(*capacity, size);
+    return *p != NULL;
+}
+
+static bool add_near(search *s, uint32_t a, uint32_t b, uint32_t image)
+{
+    if (!dem_grow(&s->near, &s->near_capacity, s->near_count, sizeof *s->near))
+        return false;
+    s->near[s->near_count++] = (near_pair){a, b, image};
+    return true;
+}
+
+// partners of body i seen from where its image stands
+static bool look_from_image(search *s, uint32_t i, const int image[3])
+{
+    const dem_bodies *b = &s->w->bodies;
+    bool own = image[0] == 0 && image[1] == 0 && image[2] == 0;
+    bool first_half = image[0] != 0 ? image[0] > 0 : image[1] != 0 ? image[1] > 0 : image[2] > 0;
+    uint32_t away = image_row(image[0], image[1], image[2]), back = image_row(-image[0], -image[1], -image[2]);
+    dem_vec3 x = body_position(b, i);
+    if (!own)
+        x = v3_add(x, v3(s->w->shifts[4 * away], s->w->shifts[4 * away + 1], s->w->shifts[4 * away + 2]));
+    for (int k = s->level_of[i]; k < s->level_count; k++) {
+        size_t count = look_around(s, &s->levels[k], x, b->radius[i] + s->w->skin);
+        for (size_t j = 0; j < count; j++) {
+            uint32_t other = s->found[j];
+            if (k == s->level_of[i] && (other < i || (other == i && !first_half)))
+                continue;
+            // i at x + S sees the other at its place: the other is at -S from i
+            bool good = other >= i ? add_near(s, i, other, back) : add_near(s, other, i, away);
+            if (!good)
+                return false;
+        }
+    }
+    return true;
+}
+
+static bool look_from(search *s, uint32_t i)
+{
+    const dem_domain_def *domain = &s->w->domain;
+    double reach = s->w->bodies.radius[i] + s->levels[s->level_count - 1].radius + s->w->skin;
+    int low[3] = {0}, high[3] = {0};
+    for (int k = 0; k < 3; k++)
+        if (domain->periodic[k]) {
+            double from = v3_get(domain->low, k), side = v3_get(domain->high, k) - from;
+            double at = v3_get(body_position(&s->w->bodies, i), k) - from;
+            // images whose reach touches the domain
+            low[k] = -(int)floor((at + reach) / side);
+            high[k] = (int)floor((side - at + reach) / side);
+        }
+    for (int x = low[0]; x <= high[0]; x++)
+        for (int y = low[1]; y <= high[1]; y++)
+            for (int z = low[2]; z <= high[2]; z++)
+                if (!look_from_image(s, i, (int[]){x, y, z}))
+                    return false;
+    return true;
+}
+
+// ---- pairs
+
+static int by_partner(const void *a, const void *b)
+{
+    const near_pair *p = a, *q = b;
+    if (p->b != q->b)
+        return p->b < q->b ? -1 : 1;
+    return p->image < q->image ? -1 : p->image > q->image;
+}
+
+static void sort_partners(near_pair *near, size_t count)
+{
+    if (count > 64) {
+        qsort(near, count, sizeof *near, by_partner);
+        return;
+    }
+    for (size_t i = 1; i < count; i++) {
+        near_pair v = near[i];
+        size_t j = i;
+        for (; j > 0 && by_partner(&near[j - 1], &v) > 0; j--)
+            near[j] = near[j - 1];
+        near[j] = v;
+    }
+}
+
+// by a, then b, then image; first[a] is where those of a begin
+static dem_status sort_near(search *s, uint32_t *first, const near_pair **sorted, dem_error *error)
+{
+    near_pair *near = s->near;
+    size_t n = s->w->bodies.count;
+    memset(first, 0, (n + 1) * sizeof *first);
+    for (size_t i = 0; i < s->near_count; i++)
+        first[s->near[i].a + 1]++;
+    for (size_t i = 0; i < n; i++)
+        first[i + 1] += first[i];
+    if (s->level_count > 1 || s->w->periodic) {
+        if (!make_room(&s->sorted, &s->sorted_capacity, s->near_count, sizeof *s->sorted))
+            return dem_fail_memory(error);
+        for (size_t i = 0; i < s->near_count; i++)
+            s->sorted[first[s->near[i].a]++] = s->near[i];
+        memmove(first + 1, first, n * sizeof *first);
+        first[0] = 0;
+        near = s->sorted;
+    }
+    for (size_t i = 0; i < n; i++)
+        sort_partners(near + first[i], first[i + 1] - first[i]);
+    *sorted = near;
+    return DEM_OK;
+}
+
+// the image of an old pair after its bodies have been moved back; DEM_IMAGES: beyond all
+static uint32_t moved_image(const search *s, const dem_pair *p)
+{
+    if (!s->w->periodic)
+        return p->image;
+    int image[3];
+    image_of(p->image, image);
+    for (int k = 0; k < 3; k++) {
+        image[k] += s->moved[3 * p->b + (uint32_t)k] - s->moved[3 * p->a + (uint32_t)k];
+        if (abs(image[k]) > DEM_IMAGES_ASIDE)
+            return DEM_IMAGES;
+    }
+    return image_row(image[0], image[1], image[2]);
+}
+
+// as many pairs as asked for, on the memory that is there
+static bool take_pairs(dem_pairs *pairs, size_t bodies, size_t count)
+{
+    size_t room = pairs->capacity;
+    bool good = true;
+    if (!pairs->first) {
+        pairs->first = dem_alloc(bodies + 1, sizeof *pairs->first);
+        pairs->adjacency_first = dem_alloc(bodies + 1, sizeof *pairs->adjacency_first);
+    }
+    if (count > room || !pairs->items) {
+        room = count + count / 8;
+        free(pairs->items);
+        free(pairs->adjacency);
+        free(pairs->adjacency_limit);
+        free(pairs->fresh);
+        pairs->items = dem_alloc(room, sizeof *pairs->items);
+        pairs->adjacency = dem_alloc(2 * room, sizeof *pairs->adjacency);
+        pairs->adjacency_limit = dem_alloc(2 * room, sizeof *pairs->adjacency_limit);
+        pairs->fresh = dem_alloc(room, sizeof *pairs->fresh);
+    }
+    good = pairs->first && pairs->adjacency_first && pairs->items && pairs->adjacency && pairs->adjacency_limit &&
+           pairs->fresh;
+    pairs->count = good ? count : 0;
+    pairs->capacity = good ? room : 0;
+    if (good) {
+        memset(pairs->adjacency_first, 0, (bodies + 1) * sizeof *pairs->adjacency_first);
+        memset(pairs->fresh, 0, count * sizeof *pairs->fresh);
+    }
+    return good;
+}
+
+void dem_pairs_release(dem_pairs *pairs)
+{
+    free(pairs->items);
+    free(pairs->first);
+    free(pairs->adjacency_first);
+    free(pairs->adjacency);
+    free(pairs->adjacency_limit);
+    free(pairs->fresh);
+}
+
+// what is known of the pairs that stay; the segments of those that go with contacts, or are seen elsewhere, are dirty
+static void merge_pairs(search *s, const near_pair *near, const dem_pairs *old, dem_pairs *pairs, pair_limits *limits)
+{
+    for (size_t a = 0; a < s->w->bodies.count; a++) {
+        size_t o = old->count ? old->first[a] : 0, o_end = old->count ? old->first[a + 1] : 0;
+        bool *dirty = &s->w->contacts.segments[a / DEM_SEGMENT].dirty;
+        for (size_t i = pairs->first[a]; i < pairs->first[a + 1]; i++) {
+            const near_pair *n = &near[i];
+            pairs->items[i] = (dem_pair){.a = n->a, .b = n->b, .normal = {9}, .image = n->image};
+            limits[i] = (pair_limits){-1, -1};
+            for (; o < o_end; o++) {
+                const dem_pair *p = &old->items[o];
+                uint32_t image = moved_image(s, p);
+                if (p->b > n->b || (p->b == n->b && image > n->image))
+                    break;
+                if (p->b == n->b && image == n->image) {
+                    pairs->items[i] = *p;
+                    pairs->items[i].image = image;
+                    *dirty |= p->count && image != p->image;
+                    limits[i] = (pair_limits){old->adjacency_limit[p->adjacent_a], old->adjacency_limit[p->adjacent_b]};
+                    o++;
+                    break;
+                }
+                *dirty |= p->count > 0;
+            }
+        }
+        for (; o < o_end; o++)
+            *dirty |= old->items[o].count > 0;
+    }
+}
+
+static void link_adjacency(const search *s, dem_pairs *pairs, const pair_limits *limits)
+{
+    size_t n = s->w->bodies.count;
+    uint32_t *first = pairs->adjacency_first;
+    for (size_t i = 0; i < pairs->count; i++) {
+        first[pairs->items[i].a + 1]++;
+        first[pairs->items[i].b + 1]++;
+    }
+    for (size_t i = 0; i < n; i++)
+        first[i + 1] += first[i];
+    for (size_t i = 0; i < pairs->count; i++) {
+        dem_pair *p = &pairs->items[i];
+        p->adjacent_a = first[p->a]++;
+        p->adjacent_b = first[p->b]++;
+        pairs->adjacency[p->adjacent_a] = pairs->adjacency[p->adjacent_b] = (uint32_t)i;
+        pairs->adjacency_limit[p->adjacent_a] = limits[i].a;
+        pairs->adjacency_limit[p->adjacent_b] = limits[i].b;
+    }
+    memmove(first + 1, first, n * sizeof *first);
+    first[0] = 0;
+}
+
+static dem_status replace_pairs(search *s, dem_error *error)
+{
+    dem_pairs *pairs = &s->spare;
+    const near_pair *near = NULL;
+    if (!make_room(&s->limits, &s->limit_capacity, s->near_count, sizeof *s->limits) ||
+        !take_pairs(pairs, s->w->bodies.count, s->near_count))
+        return dem_fail_memory(error);
+    DEM_TRY(sort_near(s, pairs->first, &near, error));
+    merge_pairs(s, near, &s->w->pairs, pairs, s->limits);
+    link_adjacency(s, pairs, s->limits);
+    dem_pairs old = s->w->pairs;
+    s->w->pairs = *pairs;
+    *pairs = old;
+    return DEM_OK;
+}
+
+dem_status dem_broad_search(dem_world *w, dem_error *error)
+{
+    search *s = w->search;
+    s->near_count = 0;
+    s->level_count = 0;
+    if (w->periodic)
+        dem_bodies_wrap(w, s->moved);
+    DEM_TRY(build_grids(s, error));
+    for (uint32_t i = 0; i < w->bodies.count; i++)
+        if (!look_from(s, i))
+            return dem_fail_memory(error);
+    DEM_TRY(replace_pairs(s, error));
+    memcpy(w->bodies.path_then, w->bodies.path, w->bodies.count * sizeof *w->bodies.path_then);
+    return DEM_OK;
+}

@@ -1,0 +1,407 @@
+/// The loop over contacts, for kernels.c: rows in, transpose, a law without branches, transpose, rows out.
+///
+/// A batch of contacts goes through four short loops by way of a buffer that stays in the first cache. Impulses are
+/// added to the momenta directly, in blocks of 8: first all of the a side, then all of the b side, whatever the width.
+#ifndef DEM_SIM_CONTACT_H
+#define DEM_SIM_CONTACT_H
+
+#include "sim/kernels.h"
+#include "sim/law/friction.h"
+
+enum { BATCH = 64 };
+
+// what the loops hand on, by lane
+enum {
+    AT_NORMAL = 0, // out of a
+    AT_OVERLAP = 3,
+    AT_A = 4, // contact point from the centre of a, and of b
+    AT_B = 7,
+    AT_VELOCITY = 10, // of b's surface over a's
+    AT_TURN = 13,     // rate about the normal [rad/s]
+    AT_MASS = 14,     // 1 / m_eff
+    AT_REDUCED = 15,  // R*
+    AT_AREA = 16,     // R_min^2 / (R_i + R_j)
+    AT_FORCE = 17,    // on a
+    AT_WALL = 20,     // velocity of the wall's surface
+    AT_COUNT = 23
+};
+
+typedef struct contact_batch {
+    double at[AT_COUNT][BATCH] __attribute__((aligned(64)));
+} contact_batch;
+
+DEM_INLINE wide3 get3(const contact_batch *b, int at, size_t g)
+{
+    return (wide3){wide_load(b->at[at] + g), wide_load(b->at[at + 1] + g), wide_load(b->at[at + 2] + g)};
+}
+DEM_INLINE void put3(contact_batch *b, int at, size_t g, wide3 v)
+{
+    wide_store(b->at[at] + g, v.x);
+    wide_store(b->at[at + 1] + g, v.y);
+    wide_store(b->at[at + 2] + g, v.z);
+}
+
+/// R(q) v of the rows' quaternions q0..q3 = q[0..3]
+DEM_INLINE wide3 turned(const wide q[4], wide3 v)
+{
+    wide a = q[2] * v.z - q[3] * v.y, b = q[3] * v.x - q[1] * v.z, c = q[1] * v.y - q[2] * v.x;
+    a = a + a;
+    b = b + b;
+    c = c + c;
+    return (wide3){v.x + q[0] * a + (q[2] * c - q[3] * b), v.y + q[0] * b + (q[3] * a - q[1] * c),
+                   v.z + q[0] * c + (q[1] * b - q[2] * a)};
+}
+DEM_INLINE wide3 turned_back(const wide q[4], wide3 v)
+{
+    const wide back[4] = {q[0], wide_all(0) - q[1], wide_all(0) - q[2], wide_all(0) - q[3]};
+    return turned(back, v);
+}
+
+typedef struct contact_side {
+    wide pose[8];
+    wide3 arm; // centre of the sphere from that of the body, axes of space
+    wide sphere[4];
+} contact_side;
+
+DEM_INLINE void load_side(const dem_features f, const dem_rows *rows, const uint32_t *body, const uint32_t *sphere,
+                          contact_side *side)
+{
+    rows_load(rows->bodies, DEM_BODY_ROW, body, side->pose);
+    rows_load4(rows->spheres, DEM_SPHERE_ROW, sphere, side->sphere);
+    if (f.scaled)
+        for (int k = 0; k < 4; k++)
+            side->sphere[k] = side->sphere[k] * side->pose[7];
+    wide zero = wide_all(0);
+    side->arm = (wide3){zero, zero, zero};
+    if (f.offset)
+        side->arm = turned(side->pose + 3, (wide3){side->sphere[0], side->sphere[1], side->sphere[2]});
+}
+
+/// What the surface at the end of the arm adds to 1/m along n: (c x n)^T I^-1 (c x n).
+DEM_INLINE wide inverse_local_mass(const dem_features f, const dem_rows *rows, const uint32_t *body,
+                                   const contact_side *side, wide3 n)
+{
+    wide inertia[4];
+    rows_load4(rows->inertia, DEM_ROW, body, inertia);
+    wide sum = inertia[0];
+    if (f.offset) {
+        wide3 own = turned_back(side->pose + 3, n);
+        wide3 c = cross3((wide3){side->sphere[0], side->sphere[1], side->sphere[2]}, own);
+        sum = sum + (c.x * c.x * inertia[1] + c.y * c.y * inertia[2] + c.z * c.z * inertia[3]);
+    }
+    return sum;
+}
+
+DEM_INLINE bool damped(const dem_features f)
+{
+    return f.rate || f.restitution;
+}
+
+/// Remembers the largest overlap over the smaller radius; rarely a new one.
+DEM_INLINE void note_overlap(double *largest, wide overlap, wide radius)
+{
+    unsigned bits = wide_bits(wide_less(wide_all(*largest) * radius, overlap));
+    if (__builtin_expect(bits != 0, 0)) {
+        double d[DEM_WIDTH], r[DEM_WIDTH];
+        wide_store(d, overlap);
+        wide_store(r, radius);
+        for (int i = 0; i < DEM_WIDTH; i++)
+            if (d[i] > *largest * r[i])
+                *largest = d[i] / r[i];
+    }
+}
+
+DEM_INLINE void pair_geometry(const dem_features f, const dem_rows *rows, const dem_contact_columns *c, size_t at,
+                              size_t g, contact_batch *batch, double *largest)
+{
+    contact_side a, b;
+    load_side(f, rows, c->a + at, c->sphere_a + at, &a);
+    load_side(f, rows, c->b + at, c->sphere_b + at, &b);
+    wide3 d = {b.pose[0] - a.pose[0], b.pose[1] - a.pose[1], b.pose[2] - a.pose[2]};
+    if (f.periodic) {
+        wide shift[4];
+        rows_load4(rows->shifts, 4, c->shift + at, shift);
+        d = (wide3){d.x + shift[0], d.y + shift[1], d.z + shift[2]};
+    }
+    if (f.offset)
+        d = (wide3){d.x + (b.arm.x - a.arm.x), d.y + (b.arm.y - a.arm.y), d.z + (b.arm.z - a.arm.z)};
+    wide distance = wide_sqrt(dot3(d, d) + wide_all(1e-300));
+    wide overlap = a.sphere[3] + b.sphere[3] - distance, half = wide_all(0.5) * overlap;
+    wide3 n = scale3(d, wide_all(1) / distance);
+    put3(batch, AT_NORMAL, g, n);
+    wide_store(batch->at[AT_OVERLAP] + g, overlap);
+    put3(batch, AT_A, g, along3(a.arm, a.sphere[3] - half, n));
+    put3(batch, AT_B, g, along3(b.arm, half - b.sphere[3], n));
+    note_overlap(largest, overlap, wide_min(a.sphere[3], b.sphere[3]));
+    if (damped(f) && f.local_mass)
+        wide_store(batch->at[AT_MASS] + g,
+                   inverse_local_mass(f, rows, c->a + at, &a, n) + inverse_local_mass(f, rows, c->b + at, &b, n));
+    if (f.hertz)
+        wide_store(batch->at[AT_REDUCED] + g, reduced_radius(a.sphere[3], b.sphere[3]));
+    if (f.young) {
+        wide least = wide_min(a.sphere[3], b.sphere[3]);
+        wide_store(batch->at[AT_AREA] + g, least * least / (a.sphere[3] + b.sphere[3]));
+    }
+}
+
+DEM_INLINE void pair_velocity(const dem_features f, const dem_rows *rows, const dem_contact_columns *c, size_t at,
+                              size_t g, contact_batch *batch)
+{
+    wide a[8], b[8];
+    rows_load(rows->bodies + 8, DEM_BODY_ROW, c->a + at, a);
+    rows_load(rows->bodies + 8, DEM_BODY_ROW, c->b + at, b);
+    wide3 p = get3(batch, AT_A, g), q = get3(batch, AT_B, g);
+    wide3 spin_a = {a[3], a[4], a[5]}, spin_b = {b[3], b[4], b[5]};
+    wide3 va = cross3(spin_a, p), vb = cross3(spin_b, q);
+    put3(batch, AT_VELOCITY, g,
+         (wide3){(b[0] - a[0]) + (vb.x - va.x), (b[1] - a[1]) + (vb.y - va.y), (b[2] - a[2]) + (vb.z - va.z)});
+    if (f.friction)
+        wide_store(batch->at[AT_TURN] + g,
+                   wide_all(0.5) * dot3((wide3){a[3] + b[3], a[4] + b[4], a[5] + b[5]}, get3(batch, AT_NORMAL, g)));
+    if (damped(f) && !f.local_mass)
+        wide_store(batch->at[AT_MASS] + g, a[6] + b[6]);
+}
+
+/// Walls by form. The normal points from the body into the wall; the contact point is the wall's nearest.
+DEM_INLINE void wall_geometry(const dem_features f, const dem_rows *rows, const dem_contact_columns *c,
+                              const dem_wall_form form, size_t at, size_t g, contact_batch *batch, double *largest)
+{
+    contact_side a;
+    load_side(f, rows, c->a + at, c->sphere_a + at, &a);
+    wide3 n, point;
+    wide overlap;
+    if (form == DEM_FORM_MESH) {
+        n = (wide3){wide_load(c->geometry[0] + at), wide_load(c->geometry[1] + at), wide_load(c->geometry[2] + at)};
+        overlap = wide_load(c->geometry[3] + at);
+        point = (wide3){wide_load(c->geometry[4] + at), wide_load(c->geometry[5] + at), wide_load(c->geometry[6] + at)};
+    } else {
+        wide wall[8];
+        rows_load(rows->walls, 16, c->sphere_b + at, wall);
+        wide3 x = {a.pose[0] + a.arm.x, a.pose[1] + a.arm.y, a.pose[2] + a.arm.z};
+        wide distance;
+        if (form == DEM_FORM_PLANE) {
+            n = (wide3){wide_all(0) - wall[0], wide_all(0) - wall[1], wide_all(0) - wall[2]};
+            distance = wide_all(0) - (dot3(x, n) + wall[3]);
+        } else {
+            // wall[3]: the radius, negative where the bodies are outside
+            wide3 from = {x.x - wall[4], x.y - wall[5], x.z - wall[6]}, axis = {wall[0], wall[1], wall[2]};
+            wide3 out = along3(from, wide_all(0) - dot3(from, axis), axis);
+            wide r = wide_sqrt(dot3(out, out) + wide_all(1e-300));
+            wide side = wide_select(wide_less(wall[3], wide_all(0)), wide_all(-1), wide_all(1));
+            n = scale3(out, side / r);
+            distance = wall[3] - side * r;
+        }
+        overlap = a.sphere[3] - distance;
+        point = along3(a.arm, distance, n);
+    }
+    put3(batch, AT_NORMAL, g, n);
+    wide_store(batch->at[AT_OVERLAP] + g, overlap);
+    put3(batch, AT_A, g, point);
+    note_overlap(largest, overlap, a.sphere[3]);
+    if (damped(f) && f.local_mass)
+        wide_store(batch->at[AT_MASS] + g, inverse_local_mass(f, rows, c->a + at, &a, n));
+    if (f.hertz)
+        wide_store(batch->at[AT_REDUCED] + g, a.sphere[3]);
+    if (f.young)
+        wide_store(batch->at[AT_AREA] + g, a.sphere[3]);
+}
+
+DEM_INLINE void wall_velocity(const dem_features f, const dem_rows *rows, const dem_contact_columns *c, size_t at,
+                              size_t g, contact_batch *batch)
+{
+    wide a[8];
+    rows_load(rows->bodies + 8, DEM_BODY_ROW, c->a + at, a);
+    wide3 spin = {a[3], a[4], a[5]}, p = get3(batch, AT_A, g), v = cross3(spin, p);
+    v = (wide3){wide_all(0) - (a[0] + v.x), wide_all(0) - (a[1] + v.y), wide_all(0) - (a[2] + v.z)};
+    wide3 turning = spin;
+    if (f.moving) {
+        wide wall[8], pose[4];
+        rows_load(rows->walls + 8, 16, c->sphere_b + at, wall);
+        rows_load4(rows->bodies, DEM_BODY_ROW, c->a + at, pose);
+        // wall: velocity of the point that passes the origin, then angular velocity
+        wide3 x = {pose[0] + p.x, pose[1] + p.y, pose[2] + p.z}, spin_wall = {wall[3], wall[4], wall[5]};
+        wide3 w = cross3(spin_wall, x);
+        w = (wide3){wall[0] + w.x, wall[1] + w.y, wall[2] + w.z};
+        v = (wide3){v.x + w.x, v.y + w.y, v.z + w.z};
+        turning = (wide3){spin.x + spin_wall.x, spin.y + spin_wall.y, spin.z + spin_wall.z};
+        put3(batch, AT_WALL, g, w);
+    }
+    put3(batch, AT_VELOCITY, g, v);
+    if (f.friction)
+        wide_store(batch->at[AT_TURN] + g, wide_all(0.5) * dot3(turning, get3(batch, AT_NORMAL, g)));
+    if (damped(f) && !f.local_mass)
+        wide_store(batch->at[AT_MASS] + g, a[6]);
+}
+
+DEM_INLINE void load_law(const dem_features f, const dem_rows *rows, const uint32_t *row, wide law[LAW_SLOTS])
+{
+    if (f.mixed) {
+        rows_load(rows->laws, LAW_SLOTS, row, law);
+        rows_load(rows->laws + 8, LAW_SLOTS, row, law + 8);
+    } else
+        for (int k = 0; k < LAW_SLOTS; k++)
+            law[k] = wide_all(rows->laws[k]);
+}
+
+DEM_INLINE wide shared(const dem_features f, wide x, wide weight)
+{
+    if (f.weighted)
+        x = x * weight;
+    return x;
+}
+
+/// Sums in lanes of 8 whatever the width.
+DEM_INLINE void tally_add(double sum[DEM_BLOCK_LANES], size_t g, wide x)
+{
+    double *lane = sum + g % DEM_BLOCK_LANES;
+    wide_store(lane, wide_load(lane) + x);
+}
+
+DEM_INLINE void put_records(const dem_features f, const contact_batch *batch, size_t g, const normal_law *n,
+                            const wide3 *force, const wide3 *spring, wide slide, wide mass, wide weight, wide_mask on,
+                            dem_contact_record *records)
+{
+    double elastic[DEM_WIDTH], stiffness[DEM_WIDTH], normal[DEM_WIDTH], held[DEM_WIDTH], slip[DEM_WIDTH], m[DEM_WIDTH];
+    double x[3][DEM_WIDTH];
+    wide_store(elastic, n->elastic * weight);
+    wide_store(stiffness, n->stiffness * weight);
+    wide_store(normal, n->force * weight);
+    wide_store(held, wide_all(0.5) * slide * dot3(*spring, *spring) * weight);
+    wide_store(slip, slide);
+    wide_store(m, mass);
+    wide_store(x[0], force->x);
+    wide_store(x[1], force->y);
+    wide_store(x[2], force->z);
+    unsigned bits = wide_bits(on);
+    for (size_t i = 0; i < DEM_WIDTH; i++) {
+        dem_contact_record *r = &records[g + i];
+        *r = (dem_contact_record){.touches = bits >> i & 1, .overlap = batch->at[AT_OVERLAP][g + i]};
+        for (int k = 0; k < 3; k++) {
+            r->normal[k] = batch->at[AT_NORMAL + k][g + i];
+            r->point_a[k] = batch->at[AT_A + k][g + i];
+            r->point_b[k] = batch->at[AT_B + k][g + i];
+            r->force[k] = x[k][i];
+        }
+        r->normal_force = r->touches ? normal[i] : 0;
+        r->stiffness = stiffness[i];
+        r->slide_stiffness = slip[i];
+        r->reduced_mass = m[i];
+        if (r->touches) {
+            // of the linear part F = k d the half, of Hertz' F = 2/3 k d two fifths
+            double linear = f.hertz ? 3 * elastic[i] - 2 * stiffness[i] * r->overlap : elastic[i];
+            r->elastic_normal = (linear / 2 + (elastic[i] - linear) * 2 / 5) * r->overlap;
+            r->elastic_slide = held[i];
+        }
+    }
+}
+
+DEM_INLINE void contact_law(const dem_features f, const dem_rows *rows, const dem_contact_job *job, size_t at, size_t g,
+                            contact_batch *batch, const bool wall, const bool record)
+{
+    const dem_contact_columns *c = &job->columns;
+    wide law[LAW_SLOTS], zero = wide_all(0);
+    load_law(f, rows, f.mixed ? c->law + at : NULL, law);
+    wide overlap = wide_load(batch->at[AT_OVERLAP] + g);
+    wide_mask on = wide_less(zero, overlap);
+    wide3 n = get3(batch, AT_NORMAL, g), v = get3(batch, AT_VELOCITY, g);
+    wide vn = dot3(v, n), mass = zero, reduced = zero, area = zero, step = wide_all(job->last_step);
+    if (damped(f))
+        mass = wide_all(1) / wide_load(batch->at[AT_MASS] + g);
+    if (f.hertz)
+        reduced = wide_load(batch->at[AT_REDUCED] + g);
+    if (f.young)
+        area = wide_load(batch->at[AT_AREA] + g);
+    normal_law normal = normal_elastic(f, law, overlap, reduced, area);
+    normal_damp(f, law, &normal, mass, vn);
+
+    wide weight = f.weighted ? wide_load(c->weight + at) : wide_all(1);
+    wide3 force = {zero, zero, zero}, spring = force;
+    wide slide = zero;
+    if (f.friction) {
+        wide turn = step * wide_load(batch->at[AT_TURN] + g);
+        spring = (wide3){wide_load(c->spring[0] + at), wide_load(c->spring[1] + at), wide_load(c->spring[2] + at)};
+        spring = spring_turn(spring, n, turn);
+        wide3 slip = along3(v, zero - vn, n);
+        friction_law t = friction(f, law, &normal, reduced, overlap, vn, mass, spring, slip, step, on);
+        force = t.force;
+        spring = t.spring;
+        if (record) {
+            slide = law[LAW_SLIDE_STIFFNESS] + law[LAW_SLIDE_RATIO] * normal.stiffness;
+            if (f.mindlin)
+                slide = slide + law[LAW_SLIDE_HERTZ] * normal.radius;
+        } else {
+            wide_store(c->spring[0] + at, spring.x);
+            wide_store(c->spring[1] + at, spring.y);
+            wide_store(c->spring[2] + at, spring.z);
+            if (f.ledger)
+                tally_add(job->tally->friction, g, shared(f, t.lost, weight));
+            if (f.ledger && f.slide_damping)
+                tally_add(job->tally->viscous, g, shared(f, t.damped, weight));
+        }
+    }
+    force = or_zero3(on, along3(force, zero - normal.force, n));
+    if (f.ledger && damped(f) && !record) {
+        wide loss = wide_or_zero(on, normal.elastic - normal.force), was = wide_load(c->loss + at);
+        wide lost = wide_all(0.5) * (was + loss) * (vn * step);
+        wide_store(c->loss + at, loss);
+        tally_add(job->tally->viscous, g, shared(f, lost, weight));
+    }
+    if (f.weighted)
+        force = scale3(force, weight);
+    if (record) {
+        put_records(f, batch, g, &normal, &force, &spring, slide, mass, weight, on,
+                    job->records + (at - g - job->begin));
+        return;
+    }
+    force = scale3(force, wide_all(job->kick));
+    put3(batch, AT_FORCE, g, force);
+    if (wall && f.moving && f.ledger)
+        tally_add(job->tally->work, g, dot3(force, get3(batch, AT_WALL, g)));
+}
+
+DEM_INLINE void scatter(const dem_rows *rows, const uint32_t *row, wide3 impulse, wide3 arm)
+{
+    wide3 moment = cross3(arm, impulse);
+    wide zero = wide_all(0);
+    wide columns[8] = {impulse.x, impulse.y, impulse.z, moment.x, moment.y, moment.z, zero, zero};
+    rows_add(rows->momentum, row, columns);
+}
+
+DEM_INLINE void contact_batches(const dem_features f, const dem_rows *rows, const dem_contact_job *job, const bool wall,
+                                const dem_wall_form form, const bool record)
+{
+    const dem_contact_columns *c = &job->columns;
+    contact_batch batch;
+    double largest = job->tally->overlap_ratio;
+    for (size_t from = job->begin; from < job->end; from += BATCH) {
+        size_t count = job->end - from < BATCH ? job->end - from : BATCH;
+        for (size_t g = 0; g < count; g += DEM_WIDTH)
+            if (wall)
+                wall_geometry(f, rows, c, form, from + g, g, &batch, &largest);
+            else
+                pair_geometry(f, rows, c, from + g, g, &batch, &largest);
+        for (size_t g = 0; g < count; g += DEM_WIDTH)
+            if (wall)
+                wall_velocity(f, rows, c, from + g, g, &batch);
+            else
+                pair_velocity(f, rows, c, from + g, g, &batch);
+        for (size_t g = 0; g < count; g += DEM_WIDTH)
+            contact_law(f, rows, job, from + g, g, &batch, wall, record);
+        if (record)
+            continue;
+        for (size_t block = 0; block < count; block += DEM_BLOCK_LANES) {
+            for (size_t g = block; g < block + DEM_BLOCK_LANES; g += DEM_WIDTH)
+                scatter(rows, c->a + from + g, get3(&batch, AT_FORCE, g), get3(&batch, AT_A, g));
+            if (wall)
+                continue;
+            for (size_t g = block; g < block + DEM_BLOCK_LANES; g += DEM_WIDTH) {
+                wide3 force = get3(&batch, AT_FORCE, g);
+                force = (wide3){wide_all(0) - force.x, wide_all(0) - force.y, wide_all(0) - force.z};
+                scatter(rows, c->target + from + g, force, get3(&batch, AT_B, g));
+            }
+        }
+    }
+    job->tally->overlap_ratio = largest;
+}
+
+#endif

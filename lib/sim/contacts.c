@@ -1,0 +1,361 @@
+#include "sim/contacts.h"
+
+#include <omp.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/status.h"
+#include "sim/bodies.h"
+
+static size_t to_blocks(size_t count)
+{
+    return (count + DEM_BLOCK_LANES - 1) / DEM_BLOCK_LANES * DEM_BLOCK_LANES;
+}
+
+static void *grown_column(const void *old, const dem_contacts *from, const dem_segment *to, size_t segments,
+                          size_t capacity, size_t width)
+{
+    char *p = aligned_alloc(64, (capacity * width + 127) / 64 * 64);
+    if (!p)
+        return NULL;
+    memset(p, 0, capacity * width);
+    for (size_t i = 0; old && i < segments; i++) {
+        const dem_segment *s = &from->segments[i];
+        memcpy(p + to[i].begin * width, (const char *)old + s->begin * width, (s->end - s->begin) * width);
+    }
+    return p;
+}
+
+// moves every segment to its place in larger columns
+static bool move_columns(const dem_features *f, dem_contacts *contacts, const dem_segment *to, size_t segments,
+                         size_t capacity, int form)
+{
+    bool walls = form >= 0, mesh = form == DEM_FORM_MESH, good = true;
+    dem_contact_columns columns = {0};
+#define COLUMN(type, name, unit, when, about)                                                                          \
+    if (when) {                                                                                                        \
+        columns.name = grown_column(contacts->columns.name, contacts, to, segments, capacity, sizeof(type));           \
+        good = good && columns.name;                                                                                   \
+    }
+    DEM_CONTACT_COLUMNS(COLUMN)
+#undef COLUMN
+    dem_contact_columns *unused = good ? &contacts->columns : &columns;
+#define COLUMN(type, name, unit, when, about) free(unused->name);
+    DEM_CONTACT_COLUMNS(COLUMN)
+#undef COLUMN
+    if (!good)
+        return false;
+    contacts->columns = columns;
+    contacts->capacity = capacity;
+    for (size_t i = 0; i < segments; i++) {
+        dem_segment *s = &contacts->segments[i];
+        s->end = to[i].begin + (s->end - s->begin);
+        s->begin = to[i].begin;
+        s->capacity = to[i].capacity;
+    }
+    return true;
+}
+
+dem_status dem_contacts_create(dem_world *w, dem_contacts *contacts, int form, dem_error *error)
+{
+    *contacts = (dem_contacts){.segments = dem_alloc_zero(w->segment_count, sizeof *contacts->segments)};
+    if (!contacts->segments || !move_columns(&w->features, contacts, contacts->segments, w->segment_count, 0, form))
+        return dem_fail_memory(error);
+    return DEM_OK;
+}
+
+void dem_contacts_release(dem_contacts *contacts)
+{
+#define COLUMN(type, name, unit, when, about) free(contacts->columns.name);
+    DEM_CONTACT_COLUMNS(COLUMN)
+#undef COLUMN
+    free(contacts->segments);
+    free(contacts->slot_body);
+}
+
+bool dem_contacts_reserve(dem_world *w, dem_contacts *contacts, int form, const size_t *needed)
+{
+    bool fits = true;
+    for (size_t i = 0; i < w->segment_count; i++)
+        fits = fits && (!contacts->segments[i].dirty || to_blocks(needed[i]) <= contacts->segments[i].capacity);
+    if (fits)
+        return true;
+    dem_segment *to = dem_alloc_zero(w->segment_count, sizeof *to);
+    size_t capacity = 0;
+    for (size_t i = 0; to && i < w->segment_count; i++) {
+        const dem_segment *s = &contacts->segments[i];
+        size_t most = s->dirty && needed[i] > s->end - s->begin ? needed[i] : s->end - s->begin;
+        // short lists grow more in proportion
+        to[i].capacity = most <= s->capacity && s->capacity < 2 * most ? s->capacity : to_blocks(most + most / 5 + 16);
+        if (most == 0)
+            to[i].capacity = 0;
+        to[i].begin = capacity;
+        capacity += to[i].capacity;
+    }
+    bool good = to && move_columns(&w->features, contacts, to, w->segment_count, capacity, form);
+    free(to);
+    return good;
+}
+
+size_t dem_contact_bytes(const dem_features *f, int form)
+{
+    bool walls = form >= 0, mesh = form == DEM_FORM_MESH;
+    size_t bytes = 0;
+#define COLUMN(type, name, unit, when, about)                                                                          \
+    if (when)                                                                                                          \
+        bytes += sizeof(type);
+    DEM_CONTACT_COLUMNS(COLUMN)
+#undef COLUMN
+    return bytes;
+}
+
+dem_contact_item dem_contact_get(const dem_contact_columns *c, size_t at)
+{
+    dem_contact_item item = {.a = c->a[at],
+                             .b = c->b ? c->b[at] : 0,
+                             .sphere_a = c->sphere_a[at],
+                             .sphere_b = c->sphere_b[at],
+                             .shift = c->shift ? c->shift[at] : 0,
+                             .law = c->law ? c->law[at] : 0,
+                             .loss = c->loss ? c->loss[at] : 0};
+    for (int k = 0; c->spring[0] && k < 3; k++)
+        item.spring[k] = c->spring[k][at];
+    return item;
+}
+
+void dem_contact_put(const dem_contact_columns *c, size_t at, const dem_contact_item *item)
+{
+    c->a[at] = item->a;
+    c->sphere_a[at] = item->sphere_a;
+    c->sphere_b[at] = item->sphere_b;
+    if (c->b)
+        c->b[at] = c->target[at] = item->b;
+    if (c->shift)
+        c->shift[at] = item->shift;
+    if (c->law)
+        c->law[at] = item->law;
+    for (int k = 0; c->spring[0] && k < 3; k++)
+        c->spring[k][at] = item->spring[k];
+    if (c->loss)
+        c->loss[at] = item->loss;
+    if (c->weight)
+        c->weight[at] = 1;
+    // a mesh contact that has not been measured yet does not touch
+    for (int k = 0; c->geometry[0] && k < 7; k++)
+        c->geometry[k][at] = k == 3 ? -1 : 0;
+}
+
+dem_contact_item dem_contact_idle(const dem_world *w, int form)
+{
+    uint32_t wall = (uint32_t)w->walls.count + (form == DEM_FORM_CYLINDER);
+    return (dem_contact_item){.a = w->bodies.dummy, .b = w->bodies.dummy + 1, .sphere_b = form < 0 ? 0 : wall};
+}
+
+// ---- lists of pairs
+
+typedef struct list {
+    dem_contact_item *items;
+    size_t count, capacity;
+} list;
+
+// whether the k-th old contact of a pair comes before this one; both lists are sorted by their spheres
+static bool comes_before(const dem_contact_columns *c, size_t at, const dem_contact_item *item)
+{
+    return c->sphere_a[at] != item->sphere_a ? c->sphere_a[at] < item->sphere_a : c->sphere_b[at] < item->sphere_b;
+}
+
+// the spring of the old contact of these spheres; `k` goes through the old list of the pair beside the new one
+static void take_history(const dem_world *w, const dem_segment *s, const dem_pair *p, dem_contact_item *item, size_t *k)
+{
+    const dem_contact_columns *c = &w->contacts.columns;
+    while (*k < p->count && comes_before(c, segment_place(s, p->start + *k), item))
+        ++*k;
+    if (*k == p->count)
+        return;
+    size_t at = segment_place(s, p->start + *k);
+    if (c->sphere_a[at] == item->sphere_a && c->sphere_b[at] == item->sphere_b) {
+        dem_contact_item old = dem_contact_get(c, at);
+        memcpy(item->spring, old.spring, sizeof item->spring);
+        item->loss = old.loss;
+    }
+}
+
+static bool add_item(list *l, const dem_contact_item *item)
+{
+    if (!dem_grow(&l->items, &l->capacity, l->count, sizeof *l->items))
+        return false;
+    l->items[l->count++] = *item;
+    return true;
+}
+
+static bool list_pair(const dem_world *w, const dem_segment *s, dem_pair *p, const dem_fresh *fresh, list *l)
+{
+    size_t start = l->count, old = 0;
+    if (!fresh)
+        for (size_t i = 0; i < p->count; i++) {
+            dem_contact_item item = dem_contact_get(&w->contacts.columns, segment_place(s, p->start + i));
+            item.shift = p->image;
+            if (!add_item(l, &item))
+                return false;
+        }
+    else {
+        const dem_template *a = &w->templates.items[w->bodies.shape[p->a]];
+        const dem_template *b = &w->templates.items[w->bodies.shape[p->b]];
+        const uint32_t *pairs = w->candidates[fresh->thread].pairs + 2 * fresh->begin;
+        for (size_t i = 0; i < fresh->count; i++) {
+            dem_contact_item item = {.a = p->a,
+                                     .b = p->b,
+                                     .sphere_a = a->first + pairs[2 * i],
+                                     .sphere_b = b->first + pairs[2 * i + 1],
+                                     .shift = p->image,
+                                     .law = w->laws.table[a->material * w->laws.material_count + b->material]};
+            take_history(w, s, p, &item, &old);
+            if (!add_item(l, &item))
+                return false;
+        }
+    }
+    p->start = (uint32_t)start;
+    p->count = (uint32_t)(l->count - start);
+    return true;
+}
+
+static size_t segment_end(const dem_world *w, size_t segment)
+{
+    size_t end = (segment + 1) * DEM_SEGMENT;
+    return end < w->bodies.count ? end : w->bodies.count;
+}
+
+// bodies of another domain get a slot each, one for all neighbouring contacts of a pair
+static void set_targets(dem_world *w, size_t segment, const list *l)
+{
+    dem_contacts *contacts = &w->contacts;
+    dem_segment *s = &contacts->segments[segment];
+    size_t domain = segment * DEM_SEGMENT / w->domain_bodies;
+    uint32_t last = UINT32_MAX;
+    s->slot_count = 0;
+    for (size_t k = 0; k < l->count; k++) {
+        uint32_t b = l->items[k].b;
+        if (b >= w->bodies.count || b / w->domain_bodies == domain)
+            continue;
+        if (b != last || k == 0 || l->items[k - 1].a != l->items[k].a)
+            contacts->slot_body[s->slot_begin + s->slot_count++] = b;
+        last = b;
+        contacts->columns.target[segment_place(s, k)] =
+            (uint32_t)(w->bodies.padded + s->slot_begin + s->slot_count - 1);
+    }
+}
+
+static bool rebuild_segment(dem_world *w, size_t segment, list *l)
+{
+    dem_segment *s = &w->contacts.segments[segment];
+    const dem_segment old = *s;
+    l->count = 0;
+    for (size_t i = w->pairs.first[segment * DEM_SEGMENT]; i < w->pairs.first[segment_end(w, segment)]; i++) {
+        uint32_t fresh = w->pairs.fresh[i];
+        dem_pair *p = &w->pairs.items[i];
+        if ((fresh || p->count) && !list_pair(w, &old, p, fresh ? &w->fresh[fresh - 1] : NULL, l))
+            return false;
+        w->pairs.fresh[i] = 0;
+    }
+    dem_contact_item idle = dem_contact_idle(w, -1);
+    while (l->count % DEM_BLOCK_LANES)
+        if (!add_item(l, &idle))
+            return false;
+    s->end = s->begin + l->count;
+    for (size_t k = 0; k < l->count; k++)
+        dem_contact_put(&w->contacts.columns, segment_place(s, k), &l->items[k]);
+    set_targets(w, segment, l);
+    s->dirty = false;
+    return true;
+}
+
+// what each dirty segment will need of contacts and of slots
+static void count_needs(const dem_world *w, size_t *contacts, size_t *slots)
+{
+    for (size_t i = 0; i < w->segment_count; i++) {
+        contacts[i] = slots[i] = 0;
+        if (!w->contacts.segments[i].dirty)
+            continue;
+        size_t domain = i * DEM_SEGMENT / w->domain_bodies;
+        for (size_t k = w->pairs.first[i * DEM_SEGMENT]; k < w->pairs.first[segment_end(w, i)]; k++) {
+            const dem_pair *p = &w->pairs.items[k];
+            size_t count = w->pairs.fresh[k] ? w->fresh[w->pairs.fresh[k] - 1].count : p->count;
+            contacts[i] += count;
+            slots[i] += count && p->b / w->domain_bodies != domain;
+        }
+    }
+}
+
+static bool reserve_slots(dem_world *w, const size_t *needed)
+{
+    dem_contacts *contacts = &w->contacts;
+    bool fits = true;
+    for (size_t i = 0; i < w->segment_count; i++)
+        fits = fits && (!contacts->segments[i].dirty || needed[i] <= contacts->segments[i].slot_capacity);
+    if (fits)
+        return true;
+    size_t total = 0;
+    for (size_t i = 0; i < w->segment_count; i++) {
+        dem_segment *s = &contacts->segments[i];
+        size_t most = s->dirty ? needed[i] : s->slot_count;
+        if (most > s->slot_capacity)
+            s->slot_capacity = most + most / 4 + 4;
+        total += s->slot_capacity;
+        s->dirty = true; // all slots move
+    }
+    free(contacts->slot_body);
+    contacts->slot_body = dem_alloc_zero(total, sizeof *contacts->slot_body);
+    contacts->slot_capacity = total;
+    size_t begin = 0;
+    for (size_t i = 0; i < w->segment_count; i++) {
+        contacts->segments[i].slot_begin = begin;
+        begin += contacts->segments[i].slot_capacity;
+    }
+    return contacts->slot_body && dem_bodies_reserve_slots(&w->bodies, total);
+}
+
+dem_status dem_contacts_rebuild(dem_world *w, dem_error *error)
+{
+    size_t *needed = dem_alloc(2 * w->segment_count, sizeof *needed),
+           *slots = needed ? needed + w->segment_count : NULL;
+    if (!needed)
+        return dem_fail_memory(error);
+    count_needs(w, needed, slots);
+    bool good = reserve_slots(w, slots);
+    if (good)
+        count_needs(w, needed, slots);
+    good = good && dem_contacts_reserve(w, &w->contacts, -1, needed);
+    int dirty = 0;
+    for (size_t i = 0; good && i < w->segment_count; i++)
+        if (w->contacts.segments[i].dirty)
+            needed[dirty++] = i;
+#pragma omp parallel num_threads(w->threads) if (dirty > 8 && w->threads > 1) reduction(&& : good)
+    {
+        list l = {0};
+#pragma omp for schedule(static)
+        for (int i = 0; i < dirty; i++)
+            good = rebuild_segment(w, needed[i], &l) && good;
+        free(l.items);
+    }
+    free(needed);
+    return good ? DEM_OK : dem_fail_memory(error);
+}
+
+void dem_contacts_add_slots(dem_world *w, size_t begin, size_t end)
+{
+    const dem_contacts *contacts = &w->contacts;
+    double *momentum = w->bodies.momentum;
+    for (size_t i = 0; i < w->segment_count; i++) {
+        const dem_segment *s = &contacts->segments[i];
+        for (size_t k = s->slot_begin; k < s->slot_begin + s->slot_count; k++) {
+            uint32_t row = contacts->slot_body[k];
+            if (row < begin || row >= end)
+                continue;
+            double *to = momentum + DEM_ROW * (size_t)row, *from = momentum + DEM_ROW * (w->bodies.padded + k);
+            for (int j = 0; j < DEM_ROW; j++) {
+                to[j] += from[j];
+                from[j] = 0;
+            }
+        }
+    }
+}

@@ -1,0 +1,66 @@
+/// The listed contacts of bodies: columns, cut into segments of bodies, rebuilt where the lists of their pairs change.
+/// Springs stay with their pair of spheres.
+///
+/// Momenta of bodies beyond the domain of a segment's own are not written by the contact pass but gathered in slots and
+/// added afterwards in fixed order, so any number of threads gives the same bits.
+#ifndef DEM_SIM_CONTACTS_H
+#define DEM_SIM_CONTACTS_H
+
+#include "sim/state.h"
+
+/// Columns of contacts: type, member of dem_contact_columns, unit, needed when (f: features; walls: of walls; mesh: of
+/// mesh walls), kept when a list is rebuilt, what it is.
+#define DEM_CONTACT_COLUMNS(X)                                                                                         \
+    X(uint32_t, a, "-", true, "row of the first body")                                                                 \
+    X(uint32_t, b, "-", !walls, "row of the second body")                                                              \
+    X(uint32_t, sphere_a, "-", true, "its sphere")                                                                     \
+    X(uint32_t, sphere_b, "-", true, "sphere of the second body, or the wall")                                         \
+    X(uint32_t, target, "-", !walls, "where the momentum of the second body goes")                                     \
+    X(uint32_t, shift, "-", f->periodic && !walls, "image of the second body")                                         \
+    X(uint32_t, law, "-", f->mixed, "row of the law")                                                                  \
+    X(double, spring[0], "m", f->friction, "tangential spring, x")                                                     \
+    X(double, spring[1], "m", f->friction, "tangential spring, y")                                                     \
+    X(double, spring[2], "m", f->friction, "tangential spring, z")                                                     \
+    X(double, loss, "N", f->ledger && (f->rate || f->restitution), "damped force of the last step")                    \
+    X(double, weight, "-", f->weighted, "share of the force that counts")                                              \
+    X(double, geometry[0], "-", mesh, "normal, x")                                                                     \
+    X(double, geometry[1], "-", mesh, "normal, y")                                                                     \
+    X(double, geometry[2], "-", mesh, "normal, z")                                                                     \
+    X(double, geometry[3], "m", mesh, "overlap")                                                                       \
+    X(double, geometry[4], "m", mesh, "contact point from the body's centre, x")                                       \
+    X(double, geometry[5], "m", mesh, "contact point, y")                                                              \
+    X(double, geometry[6], "m", mesh, "contact point, z")
+
+/// Empty columns and segments for a world's pairs (form -1) or walls of one form.
+dem_status dem_contacts_create(dem_world *world, dem_contacts *contacts, int form, dem_error *error);
+void dem_contacts_release(dem_contacts *contacts);
+
+/// Makes room for `needed[segment]` contacts in every dirty segment.
+bool dem_contacts_reserve(dem_world *world, dem_contacts *contacts, int form, const size_t *needed);
+
+/// Rebuilds the lists of all dirty segments from the pairs and the fresh candidates, and forgets these.
+dem_status dem_contacts_rebuild(dem_world *world, dem_error *error);
+
+/// Adds the slots of all segments that belong to the bodies [begin, end), and empties them.
+void dem_contacts_add_slots(dem_world *world, size_t begin, size_t end);
+
+/// Sets the weights of the segments' contacts, of pairs and walls, where several of one pair share its force: `mean`
+/// one over their number; `merge` by overlap among those that nearly coincide (PHYSICS 1.13).
+void dem_weigh_contacts(dem_world *world, size_t begin, size_t end);
+
+/// Memory of a contact [B].
+size_t dem_contact_bytes(const dem_features *features, int form);
+
+/// One contact with its history, to be carried from an old list to a new one.
+typedef struct dem_contact_item {
+    uint32_t a, b, sphere_a, sphere_b, shift, law;
+    double spring[3], loss;
+} dem_contact_item;
+
+dem_contact_item dem_contact_get(const dem_contact_columns *columns, size_t place);
+/// `target` is set to b.
+void dem_contact_put(const dem_contact_columns *columns, size_t place, const dem_contact_item *item);
+/// A contact that never touches, of pairs (form -1) or walls.
+dem_contact_item dem_contact_idle(const dem_world *world, int form);
+
+#endif

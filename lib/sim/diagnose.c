@@ -1,0 +1,137 @@
+#include "sim/diagnose.h"
+
+#include "base/status.h"
+#include "sim/timestep.h"
+
+typedef enum warning {
+    WARN_STEP,
+    WARN_RESOLUTION,
+    WARN_PENETRATION,
+    WARN_PASSED,
+    WARN_TUNNEL,
+    WARN_ENERGY,
+    WARN_SEARCH,
+} warning;
+
+static const double PENETRATION = 0.05; // of the smaller radius
+static const double TUNNEL = 0.1;       // of a radius in a step
+static const double ENERGY_OFF = 0.01;  // of the energy turned over
+static const double CONTACT_STEPS = 10; // least number of steps in a contact
+static const double SEARCH_EVERY = 5;   // steps between searches
+
+// true: not said yet, or by now twice as bad
+static bool worse(dem_world *w, warning which, double how)
+{
+    if (!(how > 2 * w->warned[which]))
+        return false;
+    w->warned[which] = how;
+    return true;
+}
+
+static void judge_step(dem_world *w, double critical)
+{
+    double accurate = dem_step_accurate(w) * (w->time_def.contact_steps > 0 ? w->time_def.contact_steps : DEM_PI);
+    if (w->next_step > critical && worse(w, WARN_STEP, w->next_step / critical))
+        dem_log(
+            w->ctx, DEM_LOG_WARNING,
+            "the time step %.3g s is above the limit of stability %.3g s of the contacts now; lower the step, or let "
+            "it be \"auto\"",
+            w->next_step, critical);
+    else if (accurate < CONTACT_STEPS * w->next_step && worse(w, WARN_RESOLUTION, w->next_step / accurate))
+        dem_log(w->ctx, DEM_LOG_WARNING,
+                "the shortest contact takes %.3g steps, less than %g: bodies will bounce too much; lower the step to "
+                "%.2g s, or the stiffness",
+                accurate / w->next_step, CONTACT_STEPS, accurate / CONTACT_STEPS);
+}
+
+// overlaps of impacts go with 1 / sqrt(k), those of weight with 1 / k (Hertz: with k^-2/5 and k^-2/3)
+static void judge_penetration(dem_world *w, double critical)
+{
+    const dem_figures *f = &w->views.figures;
+    double ratio = f->largest_overlap_ratio;
+    if (!(ratio > PENETRATION) || !worse(w, WARN_PENETRATION, ratio))
+        return;
+    double much = ratio / PENETRATION, power = w->features.hertz ? 2.5 : 2;
+    if (w->next_step > critical)
+        dem_log(w->ctx, DEM_LOG_WARNING,
+                "bodies overlap by %.2g %% of the smaller radius (over %g %%), because the time step is too large",
+                100 * ratio, 100 * PENETRATION);
+    else
+        dem_log(w->ctx, DEM_LOG_WARNING,
+                "bodies overlap by %.2g %% of the smaller radius (over %g %%): the contacts are too soft for these "
+                "speeds and weights; %.2g times the stiffness would do, or bodies that start apart",
+                100 * ratio, 100 * PENETRATION, pow(much, power));
+}
+
+static void judge_walls(dem_world *w)
+{
+    const dem_views *v = &w->views;
+    for (size_t i = 0; i < v->contact_count; i++) {
+        const dem_contact *c = &v->contacts[i];
+        if (c->wall == UINT32_MAX)
+            continue;
+        double radius =
+            w->templates.spheres[w->templates.items[v->shape[c->body]].first + c->sphere][3] * v->scale[c->body];
+        if (c->overlap > radius && worse(w, WARN_PASSED, c->overlap / radius))
+            dem_log(
+                w->ctx, DEM_LOG_WARNING,
+                "the centre of a sphere of body %u has passed wall \"%s\"; the wall is too soft, or the body too fast",
+                (unsigned)c->body, w->walls.items[c->wall].name);
+    }
+}
+
+static void judge_speed(dem_world *w)
+{
+    double most = 0;
+    uint32_t fastest = 0;
+    for (size_t i = 0; i < w->bodies.count; i++) {
+        size_t row = w->bodies.place[i];
+        double radius = w->templates.items[w->bodies.shape[row]].radius_min * body_scale(&w->bodies, row);
+        double moved = body_stride(&w->bodies, row, w->next_step) / radius;
+        if (moved > most) {
+            most = moved;
+            fastest = (uint32_t)i;
+        }
+    }
+    if (most > TUNNEL && worse(w, WARN_TUNNEL, most))
+        dem_log(
+            w->ctx, DEM_LOG_WARNING,
+            "body %u moves by %.2g of its smallest sphere's radius in a step (over %g): it may pass through others; "
+            "lower the time step",
+            (unsigned)fastest, most, TUNNEL);
+}
+
+static void judge_energy(dem_world *w)
+{
+    double off = w->views.figures.energy.error;
+    if (isfinite(off) && fabs(off) > ENERGY_OFF && worse(w, WARN_ENERGY, fabs(off)))
+        dem_log(w->ctx, DEM_LOG_WARNING,
+                "energy is off by %.2g %% of what was turned over; the time step is too large for the contacts",
+                100 * off);
+}
+
+static void judge_search(dem_world *w)
+{
+    if (w->steps < 1000 || w->searches * SEARCH_EVERY < (double)w->steps)
+        return;
+    double often = (double)w->searches / (double)w->steps;
+    if (worse(w, WARN_SEARCH, often))
+        dem_log(
+            w->ctx, DEM_LOG_WARNING,
+            "neighbours are searched every %.2g steps: single bodies are very fast for the others' size; the run is "
+            "right but slow",
+            1 / often);
+}
+
+dem_status dem_world_diagnose(dem_world *w, dem_error *error)
+{
+    dem_step_bound bound;
+    DEM_TRY(dem_step_stable(w, false, &bound, error));
+    judge_step(w, bound.step);
+    judge_penetration(w, bound.step);
+    judge_walls(w);
+    judge_speed(w);
+    judge_energy(w);
+    judge_search(w);
+    return DEM_OK;
+}

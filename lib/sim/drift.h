@@ -1,0 +1,282 @@
+/// The motion of bodies, for kernels.c: central differences with momenta at half steps, and the free rotor by symmetric
+/// splitting (`lsym`): an exact symmetric top between two half turns about axis b. Axes (a, b, c) = (x, y, z) of the
+/// run frame, c chosen in template.c. L stays as it is in space, so it is kept to the last bit (Fasso 2003; Dullweber,
+/// Leimkuhler & McLachlan 1997).
+#ifndef DEM_SIM_DRIFT_H
+#define DEM_SIM_DRIFT_H
+
+#include "sim/contact.h"
+
+/// What turns more than this in a step [rad] is turned in several.
+static const double TURN_AT_ONCE = 0.3;
+enum { TURNS_MOST = 1024 };
+
+// sin(x) / x and cos x by u = x^2, to the last bit for |x| < 0.4
+DEM_INLINE wide sine_over(wide u)
+{
+    wide s = wide_all(1.0 / 362880) + u * wide_all(-1.0 / 39916800);
+    s = wide_all(1.0 / 120) + u * (wide_all(-1.0 / 5040) + u * s);
+    return wide_all(1) + u * (wide_all(-1.0 / 6) + u * s);
+}
+DEM_INLINE wide cosine(wide u)
+{
+    wide c = wide_all(1.0 / 40320) + u * wide_all(-1.0 / 3628800);
+    c = wide_all(1.0 / 24) + u * (wide_all(-1.0 / 720) + u * c);
+    return wide_all(1) + u * (wide_all(-0.5) + u * c);
+}
+
+typedef struct rotor {
+    wide q[4];
+    wide3 body; // angular momentum in the body
+} rotor;
+
+// turns about b by twice the half angle `k` body.y
+DEM_INLINE void turn_b(rotor *r, wide k)
+{
+    wide half = k * r->body.y, u = half * half, s = half * sine_over(u), c = cosine(u);
+    wide q0 = r->q[0] * c - r->q[2] * s, q1 = r->q[1] * c - r->q[3] * s;
+    wide q2 = r->q[2] * c + r->q[0] * s, q3 = r->q[3] * c + r->q[1] * s;
+    wide cosine2 = c * c - s * s, sine2 = (s + s) * c, x = r->body.x, z = r->body.z;
+    *r = (rotor){{q0, q1, q2, q3}, {cosine2 * x - sine2 * z, r->body.y, cosine2 * z + sine2 * x}};
+}
+
+DEM_INLINE void turn_c(rotor *r, wide k)
+{
+    wide half = k * r->body.z, u = half * half, s = half * sine_over(u), c = cosine(u);
+    wide q0 = r->q[0] * c - r->q[3] * s, q1 = r->q[1] * c + r->q[2] * s;
+    wide q2 = r->q[2] * c - r->q[1] * s, q3 = r->q[3] * c + r->q[0] * s;
+    wide cosine2 = c * c - s * s, sine2 = (s + s) * c, x = r->body.x, y = r->body.y;
+    *r = (rotor){{q0, q1, q2, q3}, {cosine2 * x + sine2 * y, cosine2 * y - sine2 * x, r->body.z}};
+}
+
+// q exp(k body): a turn about L itself, which leaves `body` as it is
+DEM_INLINE void turn_whole(rotor *r, wide k)
+{
+    wide3 half = scale3(r->body, k);
+    wide u = dot3(half, half), s = sine_over(u), e0 = cosine(u), e1 = s * half.x, e2 = s * half.y, e3 = s * half.z;
+    wide q0 = r->q[0], q1 = r->q[1], q2 = r->q[2], q3 = r->q[3];
+    r->q[0] = q0 * e0 - q1 * e1 - q2 * e2 - q3 * e3;
+    r->q[1] = q0 * e1 + q1 * e0 + q2 * e3 - q3 * e2;
+    r->q[2] = q0 * e2 - q1 * e3 + q2 * e0 + q3 * e1;
+    r->q[3] = q0 * e3 + q1 * e2 - q2 * e1 + q3 * e0;
+}
+
+// one turn by `step`; `inverse` 1/I
+DEM_INLINE void turn_free(rotor *r, const wide inverse[3], wide step)
+{
+    wide kb = wide_all(0.25) * step * (inverse[1] - inverse[0]), kc = wide_all(0.5) * step * (inverse[2] - inverse[0]);
+    turn_b(r, kb);
+    turn_whole(r, wide_all(0.5) * step * inverse[0]);
+    turn_c(r, kc);
+    turn_b(r, kb);
+}
+
+// number of equal turns, so that none is too large; the squared angle of the step is given
+DEM_INLINE unsigned turns_needed(wide angle2, double turns[DEM_WIDTH])
+{
+    unsigned most = 1;
+    double a[DEM_WIDTH];
+    wide_store(a, angle2);
+    for (int i = 0; i < DEM_WIDTH; i++) {
+        double n = ceil(sqrt(a[i]) / TURN_AT_ONCE);
+        turns[i] = n >= 1 && n <= TURNS_MOST ? n : n > TURNS_MOST ? TURNS_MOST : 1;
+        most = turns[i] > most ? (unsigned)turns[i] : most;
+    }
+    return most;
+}
+
+DEM_INLINE wide larger_square(wide a, wide b)
+{
+    return wide_max(a * a, b * b);
+}
+
+// q exp(k spin) from the left: a turn in space
+DEM_INLINE void turn_in_space(const wide q[4], wide3 spin, wide k, wide out[4])
+{
+    wide3 half = scale3(spin, k);
+    wide u = dot3(half, half), s = sine_over(u), e0 = cosine(u), e1 = s * half.x, e2 = s * half.y, e3 = s * half.z;
+    out[0] = e0 * q[0] - e1 * q[1] - e2 * q[2] - e3 * q[3];
+    out[1] = e0 * q[1] + e1 * q[0] + e2 * q[3] - e3 * q[2];
+    out[2] = e0 * q[2] - e1 * q[3] + e2 * q[0] + e3 * q[1];
+    out[3] = e0 * q[3] + e1 * q[2] - e2 * q[1] + e3 * q[0];
+}
+
+// spheres and other bodies with three equal moments: exact
+DEM_INLINE wide3 drift_isotropic(wide q[4], wide3 momentum, wide inverse, wide step)
+{
+    wide3 spin = scale3(momentum, inverse);
+    wide angle2 = dot3(spin, spin) * (step * step), next[4];
+    if (__builtin_expect(wide_bits(wide_less(wide_all(TURN_AT_ONCE * TURN_AT_ONCE), angle2)) != 0, 0)) {
+        double count[DEM_WIDTH];
+        unsigned turns = turns_needed(angle2, count);
+        wide part = step / wide_load(count);
+        for (unsigned i = 0; i < turns; i++) {
+            turn_in_space(q, spin, wide_all(0.5) * part, next);
+            wide_mask goes = wide_less(wide_all((double)i), wide_load(count));
+            for (int j = 0; j < 4; j++)
+                q[j] = wide_select(goes, next[j], q[j]);
+        }
+    } else {
+        turn_in_space(q, spin, wide_all(0.5) * step, next);
+        for (int j = 0; j < 4; j++)
+            q[j] = next[j];
+    }
+    return spin;
+}
+
+DEM_INLINE wide3 drift_rotor(wide q[4], wide3 momentum, const wide inverse[3], wide step)
+{
+    rotor r = {{q[0], q[1], q[2], q[3]}, turned_back(q, momentum)};
+    wide angle2 = wide_max(dot3(r.body, r.body) * inverse[0] * inverse[0],
+                           larger_square(r.body.y * inverse[1], r.body.z * inverse[2]));
+    angle2 = angle2 * (step * step);
+    if (__builtin_expect(wide_bits(wide_less(wide_all(TURN_AT_ONCE * TURN_AT_ONCE), angle2)) != 0, 0)) {
+        double count[DEM_WIDTH];
+        unsigned turns = turns_needed(angle2, count);
+        wide part = step / wide_load(count);
+        for (unsigned i = 0; i < turns; i++) {
+            rotor next = r;
+            turn_free(&next, inverse, part);
+            wide_mask goes = wide_less(wide_all((double)i), wide_load(count));
+            for (int j = 0; j < 4; j++)
+                r.q[j] = wide_select(goes, next.q[j], r.q[j]);
+            r.body = select3(goes, next.body, r.body);
+        }
+    } else
+        turn_free(&r, inverse, step);
+    for (int j = 0; j < 4; j++)
+        q[j] = r.q[j];
+    return turned(q, (wide3){r.body.x * inverse[0], r.body.y * inverse[1], r.body.z * inverse[2]});
+}
+
+DEM_INLINE wide3 drift(wide q[4], wide3 momentum, const wide inertia[8], wide step)
+{
+    unsigned all = (unsigned)((1u << DEM_WIDTH) - 1);
+    wide_mask isotropic = wide_less(wide_all(0.5), inertia[7]);
+    unsigned bits = wide_bits(isotropic);
+    if (bits == all)
+        return drift_isotropic(q, momentum, inertia[1], step);
+    if (bits == 0)
+        return drift_rotor(q, momentum, inertia + 1, step);
+    // both, so that a body does not depend on its neighbours in the rows
+    wide other[4] = {q[0], q[1], q[2], q[3]};
+    wide3 spin = drift_isotropic(q, momentum, inertia[1], step);
+    wide3 other_spin = drift_rotor(other, momentum, inertia + 1, step);
+    for (int j = 0; j < 4; j++)
+        q[j] = wide_select(isotropic, q[j], other[j]);
+    return select3(isotropic, spin, other_spin);
+}
+
+/// Local damping of one vector of impulse against a velocity, componentwise or as vectors (Cundall 1987).
+DEM_INLINE wide3 damp_locally(wide3 impulse, wide3 velocity, wide alpha, const bool vector)
+{
+    wide zero = wide_all(0);
+    if (vector) {
+        wide size2 = dot3(impulse, impulse), speed2 = dot3(velocity, velocity);
+        wide s = alpha * wide_sqrt(size2) * wide_rsqrt(speed2);
+        return scale3(velocity, zero - wide_or_zero(wide_less(zero, speed2), s));
+    }
+    wide j[3] = {impulse.x, impulse.y, impulse.z}, v[3] = {velocity.x, velocity.y, velocity.z};
+    for (int k = 0; k < 3; k++) {
+        wide size = alpha * wide_abs(j[k]);
+        j[k] = wide_or_zero(wide_less(v[k], zero), size) - wide_or_zero(wide_less(zero, v[k]), size);
+    }
+    return (wide3){j[0], j[1], j[2]};
+}
+
+typedef struct damping {
+    wide3 local[2], drag[2]; // impulses of force and moment
+} damping;
+
+DEM_INLINE void damp(const dem_motion_job *job, const wide before[8], const wide motion[8], wide3 weight,
+                     wide momentum[8], damping *d)
+{
+    wide zero = wide_all(0);
+    wide3 none = {zero, zero, zero}, v = {motion[0], motion[1], motion[2]}, w = {motion[3], motion[4], motion[5]};
+    *d = (damping){{none, none}, {none, none}};
+    if (job->local > 0) {
+        wide3 force = {momentum[0] - before[0], momentum[1] - before[1], momentum[2] - before[2]};
+        wide3 moment = {momentum[3] - before[3], momentum[4] - before[4], momentum[5] - before[5]};
+        if (!job->exclude_gravity)
+            force = along3(force, wide_all(1), weight);
+        wide alpha = wide_all(job->local);
+        d->local[0] = damp_locally(force, v, alpha, job->vector);
+        d->local[1] = damp_locally(moment, w, alpha, job->vector);
+    }
+    if (job->viscous > 0) {
+        wide c = wide_all(-job->kick * job->viscous);
+        d->drag[0] = scale3((wide3){before[0], before[1], before[2]}, c);
+        d->drag[1] = scale3((wide3){before[3], before[4], before[5]}, c);
+    }
+    for (int k = 0; k < 2; k++) {
+        momentum[3 * k] = momentum[3 * k] + (d->local[k].x + d->drag[k].x);
+        momentum[3 * k + 1] = momentum[3 * k + 1] + (d->local[k].y + d->drag[k].y);
+        momentum[3 * k + 2] = momentum[3 * k + 2] + (d->local[k].z + d->drag[k].z);
+    }
+}
+
+// twice the energy taken out by impulses: against the mean of the velocities before and after
+DEM_INLINE wide taken(const wide3 impulse[2], const wide was[8], const wide now[8])
+{
+    wide3 v = {was[0] + now[0], was[1] + now[1], was[2] + now[2]};
+    wide3 w = {was[3] + now[3], was[4] + now[4], was[5] + now[5]};
+    return wide_all(0) - (dot3(impulse[0], v) + dot3(impulse[1], w));
+}
+
+DEM_INLINE void move_bodies(const dem_rows *rows, dem_motion_job *job, const bool damped)
+{
+    wide step = wide_all(job->step);
+    for (size_t i = job->begin; i < job->end; i += DEM_WIDTH) {
+        wide pose[8], motion[8], momentum[8], inertia[8], was[8];
+        double *body = rows->bodies + DEM_BODY_ROW * i;
+        rows_load_next(body, DEM_BODY_ROW, pose);
+        rows_load_next(rows->momentum + DEM_ROW * i, DEM_ROW, momentum);
+        rows_load_next(rows->inertia + DEM_ROW * i, DEM_ROW, inertia);
+        wide kick = wide_all(job->kick) * inertia[5];
+        wide3 weight = {kick * wide_all(job->gravity[0]), kick * wide_all(job->gravity[1]),
+                        kick * wide_all(job->gravity[2])};
+        damping d;
+        if (damped) {
+            wide before[8];
+            rows_load_next(job->before + DEM_ROW * i, DEM_ROW, before);
+            rows_load_next(body + 8, DEM_BODY_ROW, was);
+            damp(job, before, was, weight, momentum, &d);
+        }
+        momentum[0] = momentum[0] + weight.x;
+        momentum[1] = momentum[1] + weight.y;
+        momentum[2] = momentum[2] + weight.z;
+        for (int k = 0; k < 3; k++) {
+            motion[k] = momentum[k] * inertia[0];
+            pose[k] = pose[k] + step * motion[k];
+        }
+        wide3 spin = drift(pose + 3, (wide3){momentum[3], momentum[4], momentum[5]}, inertia, step);
+        // to the first order: what a step adds to |q| - 1 is of the last bits
+        wide norm = wide_all(1.5) -
+                    wide_all(0.5) * (pose[3] * pose[3] + pose[4] * pose[4] + pose[5] * pose[5] + pose[6] * pose[6]);
+        for (int k = 3; k < 7; k++)
+            pose[k] = pose[k] * norm;
+        motion[3] = spin.x;
+        motion[4] = spin.y;
+        motion[5] = spin.z;
+        motion[6] = inertia[0];
+        motion[7] = wide_all(0);
+        wide turning = dot3(spin, spin) * (inertia[4] * inertia[4]);
+        wide speed2 = motion[0] * motion[0] + motion[1] * motion[1] + motion[2] * motion[2] + turning;
+        wide path = wide_load(job->path + i) + step * wide_sqrt(speed2 + speed2);
+        wide_store(job->path + i, path);
+        unsigned bits = wide_bits(wide_not_le(path, wide_load(job->limit + i)));
+        if (job->wall_limit)
+            bits |= wide_bits(wide_not_le(path + wide_all(job->wall_path), wide_load(job->wall_limit + i)));
+        for (; bits; bits &= bits - 1)
+            job->asked[job->asked_count++] = (uint32_t)i + (uint32_t)__builtin_ctz(bits);
+        if (damped && job->tally) {
+            tally_add(job->tally->local, i, wide_all(0.5) * taken(d.local, was, motion));
+            tally_add(job->tally->drag, i, wide_all(0.5) * taken(d.drag, was, motion));
+        }
+        rows_store_next(body, DEM_BODY_ROW, pose);
+        rows_store_next(body + 8, DEM_BODY_ROW, motion);
+        rows_store_next(rows->momentum + DEM_ROW * i, DEM_ROW, momentum);
+    }
+}
+
+#endif

@@ -1,0 +1,163 @@
+// What a scene pays for, in the words of the lists that everything is made from.
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/status.h"
+#include "base/text.h"
+#include "sim/bodies.h"
+#include "sim/contacts.h"
+#include "sim/timestep.h"
+
+static const char *const instruction_sets[][2] = {{"v4", "AVX-512"}, {"v3", "AVX2"}, {"plain", "plain C"}};
+
+static void put_row(dem_buffer *out, const char *name, size_t bytes, const char *about, const char *unit)
+{
+    dem_buffer_print(out, "  %-14s %4zu B  %s [%s]\n", name, bytes, about, unit);
+}
+
+static void put_bodies(dem_buffer *out, const dem_world *w)
+{
+    dem_buffer_print(out, "columns of a body, %.0f B:\n", dem_bodies_bytes(w));
+#define COLUMN(type, name, width, unit, when, about)                                                                   \
+    if (when)                                                                                                          \
+        put_row(out, #name, (width) * sizeof(type), about, unit);
+    DEM_BODY_COLUMNS(COLUMN)
+#undef COLUMN
+}
+
+static void put_contacts(dem_buffer *out, const dem_world *w, int form, const char *what)
+{
+    const dem_features *f = &w->features;
+    bool walls = form >= 0, mesh = form == DEM_FORM_MESH;
+    dem_buffer_print(out, "columns of a contact %s, %zu B:\n", what, dem_contact_bytes(f, form));
+#define COLUMN(type, name, unit, when, about)                                                                          \
+    if (when)                                                                                                          \
+        put_row(out, #name, sizeof(type), about, unit);
+    DEM_CONTACT_COLUMNS(COLUMN)
+#undef COLUMN
+}
+
+static void put_kernel(dem_buffer *out, const dem_world *w)
+{
+    const char *set = w->kernels->name;
+    for (size_t i = 0; i < sizeof instruction_sets / sizeof *instruction_sets; i++)
+        if (strcmp(set, instruction_sets[i][0]) == 0)
+            set = instruction_sets[i][1];
+    dem_buffer_print(out, "kernel: %s (%s)", w->instance->name, set);
+    dem_buffer_text(out,
+                    w->instance->any ? ", which asks for each feature as it goes\n" : ", made for these features\n");
+    dem_buffer_text(out, "features:\n");
+    bool some = false;
+#define FEATURE(name, about)                                                                                           \
+    if (w->features.name) {                                                                                            \
+        dem_buffer_print(out, "  %-14s %s\n", #name, about);                                                           \
+        some = true;                                                                                                   \
+    }
+    DEM_FEATURES(FEATURE)
+#undef FEATURE
+    if (!some)
+        dem_buffer_text(out, "  none\n");
+}
+
+static size_t count_walls(const dem_world *w, dem_wall_form form)
+{
+    size_t count = 0;
+    for (size_t i = 0; i < w->walls.count; i++)
+        count += w->walls.items[i].form == form;
+    return count;
+}
+
+static void put_passes(dem_buffer *out, const dem_world *w)
+{
+    size_t isotropic = 0, meshes = count_walls(w, DEM_FORM_MESH);
+    for (size_t row = 0; row < w->bodies.count; row++)
+        isotropic += w->bodies.inertia[DEM_ROW * row + 7] > 0;
+    dem_buffer_text(out, "passes of a step:\n");
+    if (w->walls.move)
+        dem_buffer_text(out, "  walls move to their place\n");
+    if (meshes)
+        dem_buffer_text(out, "  mesh contacts: exact closest points on the listed triangles\n");
+    if (w->features.weighted)
+        dem_buffer_text(out, "  weights of contacts that stand for the same pair\n");
+    if (w->walls.count)
+        dem_buffer_print(out, "  walls: %zu planes, %zu cylinders, %zu meshes\n", count_walls(w, DEM_FORM_PLANE),
+                         count_walls(w, DEM_FORM_CYLINDER), meshes);
+    dem_buffer_text(out, "  contacts of pairs\n");
+    if (w->segment_count * DEM_SEGMENT > w->domain_bodies)
+        dem_buffer_print(out, "  momenta across domains of %zu bodies\n", w->domain_bodies);
+    dem_buffer_text(out, "  motion: central differences, ");
+    if (isotropic == w->bodies.count)
+        dem_buffer_text(out, "isotropic rotation (all bodies have three equal moments)\n");
+    else if (isotropic == 0)
+        dem_buffer_text(out, "rotation by lsym\n");
+    else
+        dem_buffer_print(out, "rotation by lsym, isotropic for %zu bodies\n", isotropic);
+    if (w->damping.local > 0 || w->damping.viscous > 0)
+        dem_buffer_text(out, "  with damping of the motion\n");
+    dem_buffer_text(out, "  lists, when bodies have moved: search, refresh, rebuild\n");
+    dem_buffer_print(out, "libraries: %s\n",
+                     meshes ? "Embree, for triangles near a body" : "none (Embree is not started)");
+}
+
+static dem_status put_step(dem_buffer *out, dem_world *w, dem_error *error)
+{
+    dem_step_bound touching, listed;
+    DEM_TRY(dem_step_stable(w, false, &touching, error));
+    DEM_TRY(dem_step_stable(w, true, &listed, error));
+    double accurate = dem_step_accurate(w);
+    dem_buffer_text(out, "time step: ");
+    dem_buffer_number(out, w->next_step, 4);
+    dem_buffer_print(out, " s, %s\n", w->time_def.step > 0 ? "as given" : "automatic");
+    dem_buffer_text(out, "  stable below ");
+    dem_buffer_number(out, touching.step, 4);
+    dem_buffer_text(out, " s with the contacts that touch, ");
+    dem_buffer_number(out, listed.step, 4);
+    dem_buffer_text(out, " s with all that may touch soon\n  ");
+    dem_buffer_number(out, accurate, 4);
+    double steps = w->time_def.contact_steps > 0 ? w->time_def.contact_steps : DEM_PI;
+    dem_buffer_text(out, " s takes the shortest contact in ");
+    dem_buffer_number(out, steps, 3);
+    dem_buffer_text(out, " steps\n");
+    return DEM_OK;
+}
+
+dem_status dem_world_explain(dem_world *w, char **text, dem_error *error)
+{
+    dem_buffer out = {0};
+    size_t spheres = 0;
+    for (size_t row = 0; row < w->bodies.count; row++)
+        spheres += w->templates.items[w->bodies.shape[row]].count;
+    dem_buffer_print(&out, "%zu bodies of %zu spheres in all, %zu shapes, %zu walls, %d threads\n", w->bodies.count,
+                     spheres, w->shape_count, w->walls.count, w->threads);
+    put_bodies(&out, w);
+    put_contacts(&out, w, -1, "of a pair");
+    if (count_walls(w, DEM_FORM_PLANE) + count_walls(w, DEM_FORM_CYLINDER))
+        put_contacts(&out, w, DEM_FORM_PLANE, "with a wall");
+    if (count_walls(w, DEM_FORM_MESH))
+        put_contacts(&out, w, DEM_FORM_MESH, "with a mesh");
+    put_kernel(&out, w);
+    put_passes(&out, w);
+    dem_status status = put_step(&out, w, error);
+    if (status == DEM_OK && out.failed)
+        status = dem_fail_memory(error);
+    if (status != DEM_OK)
+        dem_buffer_release(&out);
+    else
+        *text = out.data;
+    return status;
+}
+
+double dem_world_bytes_per_body(const dem_world *w)
+{
+    size_t n = w->bodies.count;
+    double bytes = dem_bodies_bytes(w) * (double)w->bodies.padded;
+    bytes += (double)(w->bodies.momentum_rows - w->bodies.padded) * DEM_ROW * sizeof(double);
+    bytes += (double)w->pairs.count * (sizeof *w->pairs.items + 2 * sizeof(uint32_t) + 2 * sizeof(double) + 4) +
+             2.0 * sizeof(uint32_t) * (double)n;
+    bytes += (double)w->contacts.capacity * (double)dem_contact_bytes(&w->features, -1);
+    for (int form = 0; form < DEM_WALL_FORMS; form++)
+        if (w->wall_contacts[form].segments)
+            bytes += (double)w->wall_contacts[form].capacity * (double)dem_contact_bytes(&w->features, form);
+    bytes += (double)w->segment_count * (sizeof(dem_segment) * 2 + sizeof(dem_tally) * (1 + DEM_WALL_FORMS));
+    return n ? bytes / (double)n : 0;
+}

@@ -1,0 +1,52 @@
+/// What a scene's contacts need, and the numbers of their laws. Each feature is a constant of the kernel that was made
+/// for it, so what is not needed is neither stored nor computed nor branched on.
+#ifndef DEM_SIM_FEATURES_H
+#define DEM_SIM_FEATURES_H
+
+#include <stdbool.h>
+
+#define DEM_FEATURES(X)                                                                                                \
+    X(linear, "a normal stiffness that does not depend on the overlap")                                                \
+    X(young, "that stiffness follows from the radii")                                                                  \
+    X(hertz, "a normal stiffness that grows with the contact radius")                                                  \
+    X(rate, "dashpots by a damping rate")                                                                              \
+    X(restitution, "dashpots by a restitution")                                                                        \
+    X(cut, "forces that do not pull")                                                                                  \
+    X(local_mass, "the mass that the contact sees, not that of the bodies")                                            \
+    X(friction, "a tangential spring with a cap, remembered by each contact")                                          \
+    X(mindlin, "a tangential stiffness that grows with the contact radius")                                            \
+    X(slide_damping, "tangential dashpots")                                                                            \
+    X(offset, "spheres away from the centre of their body")                                                            \
+    X(scaled, "bodies that scale their shape")                                                                         \
+    X(periodic, "images across periodic sides")                                                                        \
+    X(mixed, "more than one law")                                                                                      \
+    X(weighted, "several contacts of one pair share its force")                                                        \
+    X(ledger, "energy that contacts dissipate is summed")                                                              \
+    X(moving, "walls that move")
+
+typedef struct dem_features {
+#define FIELD(name, about) bool name;
+    DEM_FEATURES(FIELD)
+#undef FIELD
+} dem_features;
+
+/// The numbers of one law, a row of 16.
+typedef enum dem_law_slot {
+    LAW_STIFFNESS,       ///< k_n [N/m]
+    LAW_YOUNG,           ///< pi E: k_n = pi E R_min^2 / (R_i + R_j) [Pa]
+    LAW_HERTZ,           ///< 2 E*: dF/d(overlap) = 2 E* sqrt(R* overlap) [Pa]
+    LAW_RATE,            ///< G_n: c_n = m_eff G_n [1/s]
+    LAW_ZETA,            ///< z: c_n = z sqrt(stiffness m_eff); 2 zeta, with Hertz 2 sqrt(5/6) zeta [-]
+    LAW_FLOOR,           ///< least normal force: 0 where the tail is cut, else -INFINITY [N]
+    LAW_SLIDE_STIFFNESS, ///< k_t [N/m]
+    LAW_SLIDE_RATIO,     ///< k_t / k_n [-]
+    LAW_SLIDE_HERTZ,     ///< 8 G*: k_t = 8 G* sqrt(R* overlap) [Pa]
+    LAW_SLIDE_RATE,      ///< G_t: c_t = m_eff G_t [1/s]
+    LAW_SLIDE_ZETA,      ///< z: c_t = z sqrt(k_t m_eff) [-]
+    LAW_FRICTION,        ///< coefficient [-]
+    LAW_KEEP_LEAST,      ///< bounds of what happens to the spring's length when k_t changes, so that the force stays
+    LAW_KEEP_MOST,       ///< (0 to INFINITY), at most stays (0 to 1), or k_t does not change (1 to 1) [-]
+    LAW_SLOTS = 16
+} dem_law_slot;
+
+#endif

@@ -1,0 +1,111 @@
+// Compiled once as it is (plain) and once per instruction set with DEM_KERNELS set to v3 or v4.
+#include "sim/kernels.h"
+
+#include "sim/contact.h"
+#include "sim/drift.h"
+#include "sim/slab.h"
+
+#ifndef DEM_KERNELS
+#define DEM_KERNELS plain
+#endif
+#define JOIN_(a, b) a##b
+#define JOIN(a, b) JOIN_(a, b)
+#define TEXT_(a) #a
+#define TEXT(a) TEXT_(a)
+
+// what people run; every other mix goes through `any`, which asks for each feature as it goes
+#define LINEAR .linear = true, .friction = true, .slide_damping = true
+#define HERTZ .hertz = true, .friction = true, .mindlin = true, .slide_damping = true
+#define RATE .rate = true
+#define RESTITUTION .restitution = true, .cut = true, .local_mass = true
+#define INSTANCES(X)                                                                                                   \
+    X(linear_rate_spheres, LINEAR, RATE, .ledger = true)                                                               \
+    X(linear_rate, LINEAR, RATE, .ledger = true, .offset = true)                                                       \
+    X(linear_rate_bare_spheres, LINEAR, RATE)                                                                          \
+    X(linear_rate_bare, LINEAR, RATE, .offset = true)                                                                  \
+    X(linear_spheres, LINEAR, RESTITUTION, .ledger = true)                                                             \
+    X(linear_clumps, LINEAR, RESTITUTION, .ledger = true, .offset = true)                                              \
+    X(linear_sizes, LINEAR, RESTITUTION, .ledger = true, .offset = true, .scaled = true)                               \
+    X(hertz_spheres, HERTZ, RESTITUTION, .ledger = true)                                                               \
+    X(hertz_clumps, HERTZ, RESTITUTION, .ledger = true, .offset = true)                                                \
+    X(hertz_sizes, HERTZ, RESTITUTION, .ledger = true, .offset = true, .scaled = true)
+
+#define KERNELS_OF(name, f)                                                                                            \
+    static void name##_pairs(dem_features given, const dem_rows *rows, const dem_contact_job *job)                     \
+    {                                                                                                                  \
+        (void)given;                                                                                                   \
+        contact_batches(f, rows, job, false, DEM_FORM_PLANE, false);                                                   \
+    }                                                                                                                  \
+    static void name##_planes(dem_features given, const dem_rows *rows, const dem_contact_job *job)                    \
+    {                                                                                                                  \
+        (void)given;                                                                                                   \
+        contact_batches(f, rows, job, true, DEM_FORM_PLANE, false);                                                    \
+    }
+#define INSTANCE(name, ...) KERNELS_OF(name, ((dem_features){__VA_ARGS__}))
+INSTANCES(INSTANCE)
+
+static void any_pairs(dem_features f, const dem_rows *rows, const dem_contact_job *job)
+{
+    if (job->records)
+        contact_batches(f, rows, job, false, DEM_FORM_PLANE, true);
+    else
+        contact_batches(f, rows, job, false, DEM_FORM_PLANE, false);
+}
+
+#define ANY_WALLS(name, form)                                                                                          \
+    static void any_##name(dem_features f, const dem_rows *rows, const dem_contact_job *job)                           \
+    {                                                                                                                  \
+        if (job->records)                                                                                              \
+            contact_batches(f, rows, job, true, form, true);                                                           \
+        else                                                                                                           \
+            contact_batches(f, rows, job, true, form, false);                                                          \
+    }
+ANY_WALLS(planes, DEM_FORM_PLANE)
+ANY_WALLS(cylinders, DEM_FORM_CYLINDER)
+ANY_WALLS(meshes, DEM_FORM_MESH)
+
+#define ENTRY(name, ...) {#name, {__VA_ARGS__}, false, name##_pairs, {name##_planes, any_cylinders, any_meshes}},
+static const dem_contact_instance instances[] = {
+    INSTANCES(ENTRY){"any", {0}, true, any_pairs, {any_planes, any_cylinders, any_meshes}},
+};
+
+static void move(const dem_rows *rows, dem_motion_job *job)
+{
+    if (job->local > 0 || job->viscous > 0)
+        move_bodies(rows, job, true);
+    else
+        move_bodies(rows, job, false);
+}
+
+static void cull(dem_cull_job *job)
+{
+    cull_pair(job);
+}
+
+static void scan(dem_scan_job *job)
+{
+    scan_cells(job);
+}
+
+static bool usable(void)
+{
+#if defined(__AVX512F__)
+    return __builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512dq") &&
+           __builtin_cpu_supports("avx512vl") && __builtin_cpu_supports("avx512bw") &&
+           __builtin_cpu_supports("avx512cd");
+#elif defined(__AVX2__)
+    return __builtin_cpu_supports("avx2") && __builtin_cpu_supports("bmi2") && __builtin_cpu_supports("fma");
+#else
+    return true;
+#endif
+}
+
+const dem_kernels JOIN(dem_kernels_, DEM_KERNELS) = {
+    .name = TEXT(DEM_KERNELS),
+    .usable = usable,
+    .instances = instances,
+    .instance_count = sizeof instances / sizeof *instances,
+    .move = move,
+    .cull = cull,
+    .scan = scan,
+};

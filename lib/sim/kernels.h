@@ -1,0 +1,149 @@
+/// The hot loops of a run, compiled once per instruction set from one source; all give the same bits.
+///
+/// Bodies stand in rows of 8 doubles on 64-byte boundaries:
+///   pose     x y z  q0 q1 q2 q3  scale          two rows side by side, 16 doubles a body
+///   motion   vx vy vz  wx wy wz  1/m  -
+///   momentum P x y z  L x y z  - -              half a step before the pose; axes of space
+///   inertia  1/m  1/I1 1/I2 1/I3  reach  m  rate  isotropic
+/// `reach` bounds the distance of a surface point from the centre where it counts for motion: 0 for one sphere at the
+/// centre. `rate` is 1/I of axis a, see drift.h.
+#ifndef DEM_SIM_KERNELS_H
+#define DEM_SIM_KERNELS_H
+
+#include "base/simd.h"
+#include "sim/features.h"
+
+enum { DEM_BODY_ROW = 16, DEM_ROW = 8, DEM_SPHERE_ROW = 4 };
+
+/// Rows of bodies and of what contacts refer to.
+typedef struct dem_rows {
+    double *bodies;        ///< [16 a body] pose and motion
+    double *momentum;      ///< [8 a body, then 8 a slot] P [kg m/s], L [kg m^2/s]
+    const double *inertia; ///< [8 a body]
+    const double *spheres; ///< [4 a sphere] x y z r of all shapes, run frame [m]
+    const double *shifts;  ///< [4 an image] where images stand off [m]
+    const double *laws;    ///< [16 a law]
+    const double *walls;   ///< [16 a wall] see wall.h
+} dem_rows;
+
+/// Energy that the contacts of a segment have dissipated, in lanes [J], and the largest overlap ratio.
+typedef struct dem_tally {
+    double friction[DEM_BLOCK_LANES], viscous[DEM_BLOCK_LANES], work[DEM_BLOCK_LANES];
+    double overlap_ratio;
+} dem_tally;
+
+/// What one contact does, for measuring.
+typedef struct dem_contact_record {
+    double normal[3], point_a[3], point_b[3]; ///< normal out of a; contact point from the centres [m]
+    double overlap, normal_force, elastic_normal, elastic_slide, reduced_mass, stiffness, slide_stiffness;
+    double force[3]; ///< on a [N]
+    double radius_a, radius_b;
+    bool touches;
+} dem_contact_record;
+
+/// Columns of contacts: a multiple of 8, padded with such that never touch. Absent columns are NULL.
+typedef struct dem_contact_columns {
+    uint32_t *a, *b;               ///< rows of the bodies; walls have no b
+    uint32_t *sphere_a, *sphere_b; ///< rows of the spheres; of walls: row of the wall instead of sphere_b
+    uint32_t *target;              ///< row of `momentum` that takes b's share
+    uint32_t *shift;               ///< row of the image of b (periodic)
+    uint32_t *law;                 ///< row of the law (mixed)
+    double *spring[3];             ///< tangential spring [m] (friction)
+    double *loss;                  ///< elastic force that was not passed on in the last step [N] (ledger, damped)
+    double *weight;                ///< share of the force that counts [-] (weighted)
+    double *geometry[7];           ///< of mesh walls: normal, overlap, point from the body's centre
+} dem_contact_columns;
+
+typedef struct dem_contact_job {
+    dem_contact_columns columns;
+    size_t begin, end;      ///< multiples of 8
+    double last_step, kick; ///< time since the last step; time the forces act [s]
+    dem_tally *tally;
+    dem_contact_record *records; ///< [end - begin] instead of forces, in the columns' order; NULL: forces
+} dem_contact_job;
+
+typedef void (*dem_contact_kernel)(dem_features f, const dem_rows *rows, const dem_contact_job *job);
+
+typedef enum dem_wall_form { DEM_FORM_PLANE, DEM_FORM_CYLINDER, DEM_FORM_MESH, DEM_WALL_FORMS } dem_wall_form;
+
+/// A kernel made for one set of features; the last of a set of instances serves all others.
+typedef struct dem_contact_instance {
+    const char *name;
+    dem_features features;
+    bool any;
+    dem_contact_kernel pairs, walls[DEM_WALL_FORMS];
+} dem_contact_instance;
+
+/// Energy that the motion of bodies has taken out and put in, in lanes [J].
+typedef struct dem_motion_tally {
+    double local[DEM_BLOCK_LANES], drag[DEM_BLOCK_LANES];
+} dem_motion_tally;
+
+typedef struct dem_motion_job {
+    size_t begin, end;        ///< bodies, multiples of 8
+    double step, kick;        ///< of the positions; of the forces [s]
+    double gravity[3];        ///< [m/s^2]
+    double *path;             ///< [bodies] length of the path of the fastest surface point [m]
+    const double *limit;      ///< [bodies] of the path, that asks for a look at the body's lists
+    const double *wall_limit; ///< [bodies] of the path plus that of moving walls; NULL: none move
+    double wall_path;         ///< [m]
+    const double *before;     ///< [8 a body] momentum before the contacts (local damping)
+    double local, viscous;    ///< damping: Cundall's alpha [-], c [1/s]
+    bool vector, exclude_gravity;
+    dem_motion_tally *tally; ///< ledger; NULL: none
+    uint32_t *asked;         ///< bodies beyond their limit, or not finite
+    size_t asked_count;
+} dem_motion_job;
+
+/// One body of a pair of near bodies, for culling its spheres.
+typedef struct dem_cull_side {
+    const float *x, *y, *z, *r; ///< columns of its shape, padded to 16 by spheres that are never near
+    size_t padded;
+    float axes[9]; ///< run frame -> space, scale included
+    float scale;
+} dem_cull_side;
+
+/// Sphere pairs nearer than a margin: found by slabs along a normal, then one by one.
+typedef struct dem_cull_job {
+    dem_cull_side a, b;
+    float offset[3]; ///< centre of b from that of a [m]
+    float normal[3]; ///< in: a guess of the direction from a to b; out: of the nearest pair
+    float margin;    ///< [m]
+    float error;     ///< of the heights in 32 bits [m]
+    float gap;       ///< out: the bodies are at least so far apart; at most `margin` says only that pairs are listed
+    float *work;     ///< [2 a.padded + 6 b.padded]
+    uint32_t *pairs; ///< out: [2 * capacity] sphere of a, sphere of b, counted within their shapes
+    size_t capacity, count; ///< count > capacity: there was no room, nothing else is valid
+} dem_cull_job;
+
+/// Bodies of one row of cells, to be compared with one body.
+typedef struct dem_scan_job {
+    const float *x, *y, *z, *r; ///< columns of bodies sorted by cell [m]
+    const uint32_t *id;
+    size_t begin, end;
+    float centre[3], reach; ///< candidates' spheres of r nearer than `reach`
+    uint32_t *found;        ///< out; room for end - begin more plus 16
+    size_t count;
+} dem_scan_job;
+
+typedef struct dem_kernels {
+    const char *name;
+    bool (*usable)(void);
+    const dem_contact_instance *instances;
+    size_t instance_count;
+    void (*move)(const dem_rows *rows, dem_motion_job *job);
+    void (*cull)(dem_cull_job *job);
+    void (*scan)(dem_scan_job *job);
+} dem_kernels;
+
+/// The best set this machine can run, or the named one (NULL: none such, or not usable here).
+const dem_kernels *dem_kernels_choose(const char *name);
+/// All sets built in, best first.
+const dem_kernels *const *dem_kernels_all(size_t *count);
+
+extern const dem_kernels dem_kernels_plain, dem_kernels_v3, dem_kernels_v4;
+
+/// The kernel made for these features, or the one for any.
+const dem_contact_instance *dem_kernels_instance(const dem_kernels *kernels, dem_features features);
+
+#endif

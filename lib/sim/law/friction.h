@@ -1,0 +1,114 @@
+/// Friction: a tangential spring that follows the contact, with a dashpot and Coulomb's cap. The spring's length is the
+/// history of the contact; linear (Cundall & Strack 1979) or Mindlin's no-slip stiffness with the unloading correction
+/// (Thornton, Cummins & Cleary 2013).
+#ifndef DEM_SIM_LAW_FRICTION_H
+#define DEM_SIM_LAW_FRICTION_H
+
+#include "sim/law/normal.h"
+
+typedef struct wide3 {
+    wide x, y, z;
+} wide3;
+
+DEM_INLINE wide dot3(wide3 a, wide3 b)
+{
+    return a.x * b.x + a.y * b.y + a.z * b.z;
+}
+/// a + s b
+DEM_INLINE wide3 along3(wide3 a, wide s, wide3 b)
+{
+    return (wide3){a.x + s * b.x, a.y + s * b.y, a.z + s * b.z};
+}
+DEM_INLINE wide3 scale3(wide3 a, wide s)
+{
+    return (wide3){a.x * s, a.y * s, a.z * s};
+}
+DEM_INLINE wide3 cross3(wide3 a, wide3 b)
+{
+    return (wide3){a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
+}
+DEM_INLINE wide3 select3(wide_mask m, wide3 a, wide3 b)
+{
+    return (wide3){wide_select(m, a.x, b.x), wide_select(m, a.y, b.y), wide_select(m, a.z, b.z)};
+}
+DEM_INLINE wide3 or_zero3(wide_mask m, wide3 a)
+{
+    return (wide3){wide_or_zero(m, a.x), wide_or_zero(m, a.y), wide_or_zero(m, a.z)};
+}
+
+/// Turns the spring with the contact: into the plane normal to n at its old length, then by `turn` [rad] about n.
+DEM_INLINE wide3 spring_turn(wide3 spring, wide3 n, wide turn)
+{
+    wide before = dot3(spring, spring);
+    spring = along3(spring, wide_all(0) - dot3(spring, n), n);
+    wide after = dot3(spring, spring);
+    // |before| / |after|; nothing is left of a spring that stood along n
+    wide stretch = before * wide_rsqrt(before * after);
+    spring = scale3(spring, wide_or_zero(wide_less(wide_all(0), after), stretch));
+    return along3(spring, turn, cross3(n, spring));
+}
+
+typedef struct friction_law {
+    wide3 force;  ///< on the first body [N]
+    wide3 spring; ///< its length afterwards [m]
+    wide lost;    ///< dissipated by sliding since the last step [J] (ledger)
+    wide damped;  ///< by the dashpot [J] (ledger)
+} friction_law;
+
+/// `spring` has been turned; `slip` is the tangential velocity of the second surface over the first [m/s], `vn` that
+/// of separation; `step` the time since the last one [s].
+DEM_INLINE friction_law friction(const dem_features f, const wide *law, const normal_law *n, wide reduced, wide overlap,
+                                 wide vn, wide mass, wide3 spring, wide3 slip, wide step, wide_mask on)
+{
+    wide zero = wide_all(0);
+    wide stiffness = law[LAW_SLIDE_STIFFNESS] + law[LAW_SLIDE_RATIO] * n->stiffness, old_stiffness = stiffness;
+    wide3 start = spring;
+    if (f.mindlin) {
+        wide old_radius = wide_sqrt(reduced * wide_max(overlap + vn * step, zero));
+        wide kept = old_radius / wide_max(n->radius, wide_all(1e-300));
+        stiffness = stiffness + law[LAW_SLIDE_HERTZ] * n->radius;
+        old_stiffness = old_stiffness + law[LAW_SLIDE_HERTZ] * old_radius;
+        spring = scale3(spring, wide_max(law[LAW_KEEP_LEAST], wide_min(law[LAW_KEEP_MOST], kept)));
+    }
+    spring = along3(spring, step, slip);
+    wide damping = zero;
+    if (f.slide_damping) {
+        if (f.rate)
+            damping = law[LAW_SLIDE_RATE] * mass;
+        if (f.restitution)
+            damping = damping + law[LAW_SLIDE_ZETA] * wide_sqrt(stiffness * mass);
+    }
+    wide3 force = scale3(spring, stiffness);
+    if (f.slide_damping)
+        force = along3(force, damping, slip);
+
+    wide size2 = dot3(force, force), cap = law[LAW_FRICTION] * wide_abs(n->force);
+    wide_mask slides = wide_less(cap * cap, size2);
+    wide part = cap * wide_rsqrt(size2), per_stiffness = wide_all(1) / stiffness;
+    wide3 capped = scale3(force, part), left = capped;
+    if (f.slide_damping) {
+        // the spring holds what the dashpot does not, but never more than the cap
+        wide3 rest = along3(capped, zero - damping, slip);
+        left = select3(wide_less(cap * cap, dot3(rest, rest)), capped, rest);
+    }
+    force = select3(slides, capped, force);
+    spring = select3(slides, scale3(left, per_stiffness), spring);
+    friction_law result = {or_zero3(on, force), or_zero3(on, spring), zero, zero};
+    if (f.ledger) {
+        // work of the mean force over the slip, less what the spring holds more than before. A dashpot's force at the
+        // last step is not kept: its share of the work is a quarter of it then and three quarters now.
+        wide3 both = along3(scale3(result.spring, stiffness), old_stiffness, start);
+        wide held = stiffness * dot3(result.spring, result.spring) - old_stiffness * dot3(start, start);
+        result.lost = wide_all(0.5) * (step * dot3(both, slip) - held);
+        if (f.slide_damping) {
+            // while sliding, the dashpot has only what the cap leaves to it
+            wide was = wide_or_zero(wide_less(zero, dot3(start, start)), wide_all(0.25));
+            wide now = dot3(along3(force, zero - stiffness, spring), slip);
+            wide last = wide_select(on, now, damping * dot3(slip, slip));
+            result.damped = step * (wide_or_zero(on, wide_all(0.75) * now) + was * last);
+        }
+    }
+    return result;
+}
+
+#endif

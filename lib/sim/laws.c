@@ -1,0 +1,186 @@
+#include "sim/laws.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/memory.h"
+#include "base/status.h"
+#include "math/vec.h"
+#include "sim/restitution.h"
+
+static const char *name_of(const dem_scene *scene, uint32_t material)
+{
+    return scene->materials[material].name ? scene->materials[material].name : "";
+}
+
+static dem_status refuse(const dem_scene *scene, const dem_pair_law *law, const char *what, dem_error *error)
+{
+    return dem_fail(error, DEM_BAD_INPUT, "the contact between \"%s\" and \"%s\" %s", name_of(scene, law->materials[0]),
+                    name_of(scene, law->materials[1]), what);
+}
+
+// E* and G* of two materials (Johnson 1985; Mindlin & Deresiewicz 1953)
+static bool moduli(const dem_material *a, const dem_material *b, double *young, double *shear)
+{
+    double ea = a->young, eb = b->young, na = a->poisson, nb = b->poisson;
+    *young = 1 / ((1 - na * na) / ea + (1 - nb * nb) / eb);
+    double ga = ea / (2 * (1 + na)), gb = eb / (2 * (1 + nb));
+    *shear = 1 / ((2 - na) / ga + (2 - nb) / gb);
+    return *young > 0 && isfinite(*young) && *shear > 0 && isfinite(*shear);
+}
+
+static dem_status fill_normal(const dem_scene *scene, const dem_pair_law *law, double *row, dem_features *needs,
+                              dem_error *error)
+{
+    const dem_material *a = &scene->materials[law->materials[0]], *b = &scene->materials[law->materials[1]];
+    double young, shear;
+    if (law->normal == DEM_NORMAL_HERTZ) {
+        if (!moduli(a, b, &young, &shear))
+            return refuse(scene, law, "is of Hertz; give both materials \"young\" and \"poisson\"", error);
+        row[LAW_HERTZ] = 2 * young;
+        needs->hertz = true;
+    } else if (law->stiffness > 0) {
+        row[LAW_STIFFNESS] = law->stiffness;
+        needs->linear = true;
+    } else {
+        // two bars in series
+        double both = 2 / (1 / a->young + 1 / b->young);
+        if (!(both > 0 && isfinite(both)))
+            return refuse(scene, law, "has no stiffness; give \"stiffness\", or both materials \"young\"", error);
+        row[LAW_YOUNG] = DEM_PI * both;
+        needs->linear = needs->young = true;
+    }
+    return DEM_OK;
+}
+
+static void fill_damping(const dem_pair_law *law, double *row, dem_features *needs)
+{
+    bool cut = law->tail == DEM_TAIL_CUT;
+    row[LAW_FLOOR] = cut && law->damping != DEM_DAMPING_NONE ? 0 : -INFINITY;
+    double zeta = 0;
+    if (law->damping == DEM_DAMPING_RATE && law->damping_rate > 0) {
+        row[LAW_RATE] = law->damping_rate;
+        needs->rate = true;
+    } else if (law->damping == DEM_DAMPING_RESTITUTION && law->restitution < 1) {
+        zeta = cut ? dem_damping_ratio_cut(law->restitution) : dem_damping_ratio(law->restitution);
+        row[LAW_ZETA] = 2 * zeta * (law->normal == DEM_NORMAL_HERTZ ? sqrt(5.0 / 6) : 1);
+        needs->restitution = true;
+    } else
+        return;
+    needs->cut |= cut;
+}
+
+static dem_status fill_friction(const dem_scene *scene, const dem_pair_law *law, double *row, dem_features *needs,
+                                dem_error *error)
+{
+    row[LAW_KEEP_LEAST] = row[LAW_KEEP_MOST] = 1;
+    if (law->friction == DEM_FRICTION_NONE || !(law->friction_coefficient > 0))
+        return DEM_OK;
+    needs->friction = true;
+    row[LAW_FRICTION] = law->friction_coefficient;
+    if (law->friction == DEM_FRICTION_MINDLIN) {
+        double young, shear;
+        if (law->normal != DEM_NORMAL_HERTZ ||
+            !moduli(&scene->materials[law->materials[0]], &scene->materials[law->materials[1]], &young, &shear))
+            return refuse(scene, law, "has Mindlin's friction, which needs the normal law of Hertz", error);
+        row[LAW_SLIDE_HERTZ] = 8 * shear;
+        row[LAW_KEEP_LEAST] = 0;
+        row[LAW_KEEP_MOST] = law->rescale ? 1 : INFINITY;
+        needs->mindlin = true;
+    } else if (law->tangential_stiffness > 0)
+        row[LAW_SLIDE_STIFFNESS] = law->tangential_stiffness;
+    else
+        row[LAW_SLIDE_RATIO] = law->stiffness_ratio;
+    if (law->tangential_rate > 0) {
+        row[LAW_SLIDE_RATE] = law->tangential_rate;
+        needs->rate = needs->slide_damping = true;
+    } else if (isnan(law->tangential_rate) && row[LAW_ZETA] > 0) {
+        row[LAW_SLIDE_ZETA] = row[LAW_ZETA];
+        needs->slide_damping = true;
+    }
+    return DEM_OK;
+}
+
+static uint32_t row_equal_to(dem_laws *laws, const double row[LAW_SLOTS])
+{
+    uint32_t i = 0;
+    while (i < laws->count && memcmp(laws->rows + (size_t)LAW_SLOTS * i, row, LAW_SLOTS * sizeof *row) != 0)
+        i++;
+    if (i == laws->count)
+        memcpy(laws->rows + (size_t)LAW_SLOTS * laws->count++, row, LAW_SLOTS * sizeof *row);
+    return i;
+}
+
+// materials of bodies that meet each other or a wall
+static bool can_meet(const dem_scene *scene, uint32_t a, uint32_t b)
+{
+    bool body_a = false, body_b = false, wall_a = false, wall_b = false;
+    for (size_t i = 0; i < scene->shape_count; i++) {
+        body_a |= scene->shapes[i].material == a;
+        body_b |= scene->shapes[i].material == b;
+    }
+    for (size_t i = 0; i < scene->wall_count; i++) {
+        wall_a |= scene->walls[i].material == a;
+        wall_b |= scene->walls[i].material == b;
+    }
+    return (body_a && (body_b || wall_b)) || (body_b && wall_a);
+}
+
+static dem_status add_law(const dem_scene *scene, const dem_pair_law *law, dem_laws *laws, dem_error *error)
+{
+    uint32_t a = law->materials[0], b = law->materials[1];
+    if (a >= scene->material_count || b >= scene->material_count)
+        return dem_fail(error, DEM_BAD_INPUT, "a contact names a material that is not there; correct it");
+    if (!can_meet(scene, a, b))
+        return DEM_OK;
+    double row[LAW_SLOTS] = {0};
+    dem_features *needs = &laws->needs;
+    DEM_TRY(fill_normal(scene, law, row, needs, error));
+    fill_damping(law, row, needs);
+    DEM_TRY(fill_friction(scene, law, row, needs, error));
+    if (row[LAW_RATE] > 0 || row[LAW_ZETA] > 0 || row[LAW_SLIDE_RATE] > 0) {
+        bool local = law->effective_mass == DEM_MASS_LOCAL;
+        if (laws->damped && needs->local_mass != local)
+            return refuse(scene, law, "has another \"effective_mass\" than the others; use one for all", error);
+        laws->damped = true;
+        needs->local_mass = local;
+    }
+    size_t n = laws->material_count;
+    laws->table[a * n + b] = laws->table[b * n + a] = row_equal_to(laws, row);
+    return DEM_OK;
+}
+
+static dem_status check_complete(const dem_scene *scene, const dem_laws *laws, dem_error *error)
+{
+    for (uint32_t a = 0; a < laws->material_count; a++)
+        for (uint32_t b = 0; b <= a; b++)
+            if (can_meet(scene, a, b) && !laws_between(laws, a, b))
+                return dem_fail(error, DEM_BAD_INPUT,
+                                "no contact law between \"%s\" and \"%s\"; add an entry to \"contacts\"",
+                                name_of(scene, b), name_of(scene, a));
+    return DEM_OK;
+}
+
+dem_status dem_laws_create(const dem_scene *scene, dem_laws *laws, dem_error *error)
+{
+    size_t n = scene->material_count;
+    *laws = (dem_laws){.material_count = n};
+    laws->rows = aligned_alloc(64, (scene->law_count + 1) * LAW_SLOTS * sizeof(double));
+    laws->table = dem_alloc(n * n, sizeof *laws->table);
+    if (!laws->rows || !laws->table)
+        return dem_fail_memory(error);
+    memset(laws->rows, 0, (scene->law_count + 1) * LAW_SLOTS * sizeof(double));
+    for (size_t i = 0; i < n * n; i++)
+        laws->table[i] = DEM_NO_LAW;
+    for (size_t i = 0; i < scene->law_count; i++)
+        DEM_TRY(add_law(scene, &scene->laws[i], laws, error));
+    DEM_TRY(check_complete(scene, laws, error));
+    laws->needs.mixed = laws->count > 1;
+    return DEM_OK;
+}
+
+void dem_laws_release(dem_laws *laws)
+{
+    free(laws->rows);
+    free(laws->table);
+}

@@ -1,0 +1,43 @@
+/// The laws of a scene as the kernels take them.
+#ifndef DEM_SIM_LAWS_H
+#define DEM_SIM_LAWS_H
+
+#include "dem/scene.h"
+#include "sim/features.h"
+
+/// Marks a pair of materials that has no law.
+#define DEM_NO_LAW UINT32_MAX
+
+typedef struct dem_laws {
+    double *rows;    ///< [LAW_SLOTS a law], on 64-byte boundaries
+    size_t count;    ///< different rows; equal ones are one
+    uint32_t *table; ///< [materials * materials] row, or DEM_NO_LAW
+    size_t material_count;
+    dem_features needs; ///< of all laws together
+    bool damped;        ///< some have dashpots
+} dem_laws;
+
+/// Takes the laws between materials that can meet. Errors: DEM_BAD_INPUT where a number is missing.
+dem_status dem_laws_create(const dem_scene *scene, dem_laws *laws, dem_error *error);
+void dem_laws_release(dem_laws *laws);
+
+static inline const double *laws_between(const dem_laws *laws, uint32_t a, uint32_t b)
+{
+    uint32_t row = laws->table[a * laws->material_count + b];
+    return row == DEM_NO_LAW ? NULL : laws->rows + (size_t)LAW_SLOTS * row;
+}
+
+/// Normal stiffness of a contact [N/m]. `area_length`: R_min^2 / (R_i + R_j); `radius`: sqrt(R* overlap) [m].
+static inline double law_stiffness(const double *law, double area_length, double radius)
+{
+    return law[LAW_STIFFNESS] + law[LAW_YOUNG] * area_length + law[LAW_HERTZ] * radius;
+}
+
+/// Its tangential stiffness [N/m].
+static inline double law_slide_stiffness(const double *law, double area_length, double radius)
+{
+    return law[LAW_SLIDE_STIFFNESS] + law[LAW_SLIDE_RATIO] * law_stiffness(law, area_length, radius) +
+           law[LAW_SLIDE_HERTZ] * radius;
+}
+
+#endif

@@ -1,0 +1,103 @@
+#include "sim/lists.h"
+
+#include "base/status.h"
+#include "sim/broad.h"
+#include "sim/contacts.h"
+#include "sim/refresh.h"
+#include "sim/wall_lists.h"
+
+static bool finite_body(const dem_bodies *b, size_t row)
+{
+    const double *p = body_pose(b, row);
+    double sum = 0;
+    for (int k = 0; k < DEM_BODY_ROW; k++)
+        sum += fabs(p[k]);
+    return isfinite(sum) && isfinite(b->path[row]);
+}
+
+static dem_status fail_body(const dem_world *w, size_t row, dem_error *error, const char *what)
+{
+    dem_vec3 x = body_position(&w->bodies, row);
+    return dem_fail(error, DEM_FAILED, "body %u (%s) at (%.4g, %.4g, %.4g) m %s in step %llu, t = %.6g s",
+                    (unsigned)w->views.by_row[row], w->shape_names[w->bodies.shape[row]], x.x, x.y, x.z, what,
+                    (unsigned long long)w->steps, dem_world_time(w));
+}
+
+static bool outside(const dem_world *w, size_t row)
+{
+    dem_vec3 x = body_position(&w->bodies, row);
+    for (int k = 0; k < 3; k++)
+        if (!w->domain.periodic[k] &&
+            (v3_get(x, k) < v3_get(w->domain.low, k) || v3_get(x, k) > v3_get(w->domain.high, k)))
+            return true;
+    return false;
+}
+
+static dem_status check_body(const dem_world *w, size_t row, dem_error *error)
+{
+    const dem_bodies *b = &w->bodies;
+    if (!finite_body(b, row))
+        return fail_body(w, row, error,
+                         "is not finite; the run is unstable: take a smaller time step, or look at the contacts there");
+    double size = larger(b->radius[row], w->skin);
+    if (body_stride(b, row, w->next_step) > 2 * size)
+        return fail_body(w, row, error,
+                         "runs away: it moves by more than its own size in a step; take a smaller time step");
+    if (w->domain.leaving == DEM_LEAVING_ERROR && outside(w, row))
+        return fail_body(w, row, error,
+                         "has left the domain; make the domain or the walls larger, or set \"leaving\": \"ignore\"");
+    return DEM_OK;
+}
+
+// one sweep of the bodies' bounds, for the speed of sweeping walls about them
+static void bound_walls(dem_world *w)
+{
+    dem_box box = box_empty();
+    double radius = 0;
+    for (size_t i = 0; i < w->bodies.count; i++) {
+        box = box_with(box, body_position(&w->bodies, i));
+        radius = larger(radius, w->bodies.radius[i]);
+    }
+    dem_vec3 centre = v3_scale(v3_add(box.low, box.high), 0.5);
+    w->sweep_speed = dem_walls_speed(&w->walls, centre, box_diagonal(box) / 2 + radius + w->skin);
+}
+
+static bool search_due(const dem_world *w)
+{
+    for (size_t k = 0; k < w->asked_count; k++)
+        if (!(w->bodies.path[w->asked[k]] - w->bodies.path_then[w->asked[k]] <= w->skin / 2))
+            return true;
+    return false;
+}
+
+static void ask_all(dem_world *w)
+{
+    w->asked_count = w->bodies.count;
+    for (size_t i = 0; i < w->asked_count; i++)
+        w->asked[i] = (uint32_t)i;
+}
+
+dem_status dem_lists_update(dem_world *w, dem_error *error)
+{
+    double t0 = dem_clock();
+    for (size_t k = 0; k < w->asked_count; k++)
+        DEM_TRY(check_body(w, w->asked[k], error));
+    if (search_due(w)) {
+        DEM_TRY(dem_broad_search(w, error));
+        w->searches++;
+        if (w->walls.sweep)
+            bound_walls(w);
+        ask_all(w);
+    }
+    double t1 = dem_clock();
+    if (w->walls.count)
+        DEM_TRY(dem_wall_refresh(w, error));
+    DEM_TRY(dem_refresh(w, error));
+    double t2 = dem_clock();
+    DEM_TRY(dem_contacts_rebuild(w, error));
+    double t3 = dem_clock();
+    w->clocks[DEM_PASS_SEARCH].seconds += t1 - t0;
+    w->clocks[DEM_PASS_REFRESH].seconds += t2 - t1;
+    w->clocks[DEM_PASS_LISTS].seconds += t3 - t2;
+    return DEM_OK;
+}

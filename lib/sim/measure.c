@@ -1,0 +1,378 @@
+#include "sim/measure.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/status.h"
+#include "sim/bodies.h"
+
+dem_status dem_views_create(dem_world *w, dem_error *error)
+{
+    dem_views *v = &w->views;
+    size_t n = w->bodies.count;
+    v->shape = dem_alloc(n, sizeof *v->shape);
+    v->coordination = dem_alloc(n, sizeof *v->coordination);
+    v->scale = dem_alloc(n, sizeof *v->scale);
+    v->mass = dem_alloc(n, sizeof *v->mass);
+    v->position = dem_alloc(n, sizeof *v->position);
+    v->velocity = dem_alloc(n, sizeof *v->velocity);
+    v->spin = dem_alloc(n, sizeof *v->spin);
+    v->force = dem_alloc(n, sizeof *v->force);
+    v->moment = dem_alloc(n, sizeof *v->moment);
+    v->orientation = dem_alloc(n, sizeof *v->orientation);
+    v->walls = dem_alloc_zero(w->walls.count, sizeof *v->walls);
+    v->by_row = dem_alloc(n, sizeof *v->by_row);
+    bool good = v->shape && v->coordination && v->scale && v->mass && v->position && v->velocity && v->spin &&
+                v->force && v->moment && v->orientation && v->walls && v->by_row;
+    if (!good)
+        return dem_fail_memory(error);
+    for (size_t i = 0; i < n; i++)
+        v->by_row[w->bodies.place[i]] = (uint32_t)i;
+    return DEM_OK;
+}
+
+void dem_views_release(dem_views *v)
+{
+    void *all[] = {v->shape, v->coordination, v->scale,       v->mass,     v->position, v->velocity, v->spin,
+                   v->force, v->moment,       v->orientation, v->contacts, v->walls,    v->records,  v->by_row};
+    for (size_t i = 0; i < sizeof all / sizeof *all; i++)
+        free(all[i]);
+}
+
+// ---- evaluating
+
+static dem_status visit_segments(dem_world *w, dem_contacts *contacts, int form, dem_contact_visit visit, void *user,
+                                 dem_error *error)
+{
+    const dem_contact_instance *any = &w->kernels->instances[w->kernels->instance_count - 1];
+    dem_rows rows = world_rows(w);
+    dem_tally scratch = {0};
+    for (size_t i = 0; i < w->segment_count; i++) {
+        const dem_segment *s = &contacts->segments[i];
+        size_t size = s->end - s->begin;
+        while (w->views.record_capacity < size)
+            if (!dem_grow(&w->views.records, &w->views.record_capacity, w->views.record_capacity,
+                          sizeof *w->views.records))
+                return dem_fail_memory(error);
+        dem_contact_job job = {contacts->columns, s->begin, s->end, w->last_step, 0, &scratch, w->views.records};
+        (form < 0 ? any->pairs : any->walls[form])(w->features, &rows, &job);
+        for (size_t k = 0; k < size; k++) {
+            size_t at = segment_place(s, k);
+            dem_contact_item item = dem_contact_get(&contacts->columns, at);
+            if (item.a < w->bodies.count)
+                visit(user, w, form, &item, &w->views.records[at - s->begin]);
+        }
+    }
+    return DEM_OK;
+}
+
+dem_status dem_visit_contacts(dem_world *w, dem_contact_visit visit, void *user, dem_error *error)
+{
+    // finds the contacts of meshes as they stand; doing so again in the next step changes nothing
+    if (w->mesh_touches)
+        dem_mesh_touch_measure(w, 0, w->segment_count);
+    dem_weigh_contacts(w, 0, w->segment_count);
+    DEM_TRY(visit_segments(w, &w->contacts, -1, visit, user, error));
+    for (int form = 0; form < DEM_WALL_FORMS; form++)
+        if (w->wall_contacts[form].segments)
+            DEM_TRY(visit_segments(w, &w->wall_contacts[form], form, visit, user, error));
+    return DEM_OK;
+}
+
+// ---- what is visited
+
+typedef struct tour {
+    uint32_t last_a, last_other; // the pair whose contacts are passing
+    bool counted;
+    bool failed;
+} tour;
+
+static void add_to_body(dem_views *v, uint32_t i, dem_vec3 force, dem_vec3 arm)
+{
+    v->force[i] = v3_add(v->force[i], force);
+    v->moment[i] = v3_add(v->moment[i], v3_cross(arm, force));
+}
+
+static dem_vec3 from_array(const double a[3])
+{
+    return v3(a[0], a[1], a[2]);
+}
+
+// a pair counts once, however many of its spheres touch
+static void count_coordination(tour *t, dem_views *v, uint32_t a, uint32_t other, uint32_t b)
+{
+    if (a != t->last_a || other != t->last_other)
+        t->counted = false;
+    t->last_a = a;
+    t->last_other = other;
+    if (t->counted)
+        return;
+    t->counted = true;
+    v->coordination[a]++;
+    if (b != UINT32_MAX)
+        v->coordination[b]++;
+}
+
+static void note_wall(dem_world *w, uint32_t wall, dem_vec3 force, dem_vec3 point)
+{
+    dem_wall_view *view = &w->views.walls[wall];
+    const dem_wall *about = &w->walls.items[wall];
+    dem_vec3 through = v3_add(about->position, quat_rotate(about->orientation, about->through));
+    view->force = v3_sub(view->force, force);
+    view->moment = v3_sub(view->moment, v3_cross(v3_sub(point, through), force));
+    view->contacts++;
+}
+
+static void visit_contact(void *user, dem_world *w, int form, const dem_contact_item *item, const dem_contact_record *r)
+{
+    tour *t = user;
+    dem_views *v = &w->views;
+    if (!r->touches)
+        return;
+    dem_figures *f = &v->figures;
+    bool wall = form >= 0;
+    uint32_t a = v->by_row[item->a], b = wall ? UINT32_MAX : v->by_row[item->b];
+    dem_vec3 force = from_array(r->force), arm = from_array(r->point_a), n = from_array(r->normal);
+    dem_vec3 point = v3_add(body_position(&w->bodies, item->a), arm);
+    double radius = w->templates.spheres[item->sphere_a][3] * body_scale(&w->bodies, item->a);
+    add_to_body(v, a, force, arm);
+    if (wall) {
+        f->wall_contacts++;
+        note_wall(w, item->sphere_b, force, point);
+    } else {
+        f->contacts++;
+        radius = fmin(radius, w->templates.spheres[item->sphere_b][3] * body_scale(&w->bodies, item->b));
+        add_to_body(v, b, v3_scale(force, -1), from_array(r->point_b));
+    }
+    count_coordination(t, v, a, wall ? item->sphere_b : b, b);
+    f->overlap_ratio = fmax(f->overlap_ratio, r->overlap / radius);
+    v->elastic += r->elastic_normal + r->elastic_slide;
+    if (!dem_grow(&v->contacts, &v->contact_capacity, v->contact_count, sizeof *v->contacts)) {
+        t->failed = true;
+        return;
+    }
+    uint32_t first_a = w->templates.items[w->bodies.shape[item->a]].first;
+    uint32_t first_b = wall ? item->sphere_b : w->templates.items[w->bodies.shape[item->b]].first;
+    v->contacts[v->contact_count++] = (dem_contact){.body = a,
+                                                    .other = b,
+                                                    .sphere = item->sphere_a - first_a,
+                                                    .other_sphere = item->sphere_b - first_b,
+                                                    .wall = wall ? item->sphere_b : UINT32_MAX,
+                                                    .point = point,
+                                                    .normal = n,
+                                                    .overlap = r->overlap,
+                                                    .normal_force = r->normal_force,
+                                                    .friction_force = v3_along(force, r->normal_force, n)};
+}
+
+// ---- bodies
+
+// force and moment of local and global damping, as the motion pass has them
+static void add_damping(const dem_world *w, size_t row, dem_vec3 weight, dem_vec3 *force, dem_vec3 *moment)
+{
+    const double *motion = body_pose(&w->bodies, row) + 8, *p = w->bodies.momentum + DEM_ROW * row;
+    dem_vec3 v[2] = {v3(motion[0], motion[1], motion[2]), v3(motion[3], motion[4], motion[5])};
+    dem_vec3 momentum[2] = {v3(p[0], p[1], p[2]), v3(p[3], p[4], p[5])}, *out[2] = {force, moment};
+    for (int k = 0; k < 2; k++) {
+        dem_vec3 f = *out[k];
+        if (k == 0 && w->damping.exclude_gravity)
+            f = v3_sub(f, weight);
+        dem_vec3 d = v3(0, 0, 0);
+        double speed = v3_norm(v[k]);
+        if (w->damping.local_frame == DEM_LOCAL_VECTOR && speed > 0)
+            d = v3_scale(v[k], -v3_norm(f) / speed);
+        else if (w->damping.local_frame == DEM_LOCAL_SPACE)
+            for (int c = 0; c < 3; c++) {
+                double x = v3_get(v[k], c);
+                v3_set(&d, c, x > 0 ? -fabs(v3_get(f, c)) : x < 0 ? fabs(v3_get(f, c)) : 0);
+            }
+        *out[k] = v3_along(v3_along(*out[k], w->damping.local, d), -w->damping.viscous, momentum[k]);
+    }
+}
+
+static dem_vec3 unwrapped(const dem_world *w, size_t row)
+{
+    dem_vec3 x = body_position(&w->bodies, row);
+    for (int k = 0; w->periodic && k < 3; k++)
+        if (w->domain.periodic[k])
+            v3_set(&x, k,
+                   v3_get(x, k) +
+                       w->bodies.wraps[3 * row + (size_t)k] * (v3_get(w->domain.high, k) - v3_get(w->domain.low, k)));
+    return x;
+}
+
+static dem_vec3 wrapped(const dem_world *w, dem_vec3 x)
+{
+    for (int k = 0; k < 3; k++)
+        if (w->domain.periodic[k]) {
+            double low = v3_get(w->domain.low, k), side = v3_get(w->domain.high, k) - low;
+            v3_set(&x, k, v3_get(x, k) - floor((v3_get(x, k) - low) / side) * side);
+        }
+    return x;
+}
+
+// velocities at the time of the positions: half a step of the forces from the momenta
+static void view_body(dem_world *w, size_t i)
+{
+    dem_views *v = &w->views;
+    size_t row = w->bodies.place[i];
+    const double *inertia = w->bodies.inertia + DEM_ROW * row, *p = w->bodies.momentum + DEM_ROW * row;
+    const dem_template *t = &w->templates.items[w->bodies.shape[row]];
+    double half = w->last_step / 2;
+    dem_vec3 weight = v3_scale(w->gravity, inertia[5]), force = v3_add(v->force[i], weight), moment = v->moment[i];
+    if (w->damping.local > 0 || w->damping.viscous > 0)
+        add_damping(w, row, weight, &force, &moment);
+    v->shape[i] = w->bodies.shape[row];
+    v->scale[i] = body_scale(&w->bodies, row);
+    v->mass[i] = inertia[5];
+    v->position[i] = wrapped(w, body_position(&w->bodies, row));
+    v->orientation[i] = template_principal_orientation(t, body_orientation(&w->bodies, row));
+    v->velocity[i] = v3_scale(v3_along(v3(p[0], p[1], p[2]), half, force), inertia[0]);
+    dem_vec3 momentum = v3_along(v3(p[3], p[4], p[5]), half, moment);
+    v->spin[i] = dem_body_spin(&w->bodies, row, momentum);
+    dem_energy *e = &v->figures.energy;
+    e->kinetic += v3_norm2(v->velocity[i]) * inertia[5] / 2;
+    e->rotational += v3_dot(momentum, v->spin[i]) / 2;
+    e->potential -= v3_dot(w->gravity, unwrapped(w, row)) * inertia[5];
+}
+
+// the farthest point of a body's spheres along `up`
+static double height_of(const dem_world *w, size_t row, dem_vec3 up)
+{
+    const dem_template *t = &w->templates.items[w->bodies.shape[row]];
+    double scale = body_scale(&w->bodies, row), top = -INFINITY;
+    dem_vec3 own = quat_unrotate(body_orientation(&w->bodies, row), up);
+    for (size_t i = t->first; i < t->first + t->count; i++) {
+        const double *s = w->templates.spheres[i];
+        top = fmax(top, v3_dot(own, v3(s[0], s[1], s[2])) + s[3]);
+    }
+    return v3_dot(up, body_position(&w->bodies, row)) + scale * top;
+}
+
+static void gather(dem_world *w)
+{
+    dem_views *v = &w->views;
+    dem_figures *f = &v->figures;
+    dem_vec3 up = v3_norm2(w->gravity) > 0 ? v3_scale(v3_unit(w->gravity), -1) : v3(0, 0, 1), moment = v3(0, 0, 0);
+    double mass = 0, touches = 0;
+    f->highest = -INFINITY;
+    for (size_t i = 0; i < w->bodies.count; i++) {
+        size_t row = w->bodies.place[i];
+        view_body(w, i);
+        mass += v->mass[i];
+        moment = v3_along(moment, v->mass[i], v->position[i]);
+        touches += v->coordination[i];
+        f->spheres += w->templates.items[v->shape[i]].count;
+        f->fastest = fmax(f->fastest, v3_norm(v->velocity[i]) + w->bodies.radius[row] * v3_norm(v->spin[i]));
+        f->highest = fmax(f->highest, height_of(w, row, up));
+    }
+    f->bodies = w->bodies.count;
+    f->centre = v3_scale(moment, mass > 0 ? 1 / mass : 0);
+    f->coordination = w->bodies.count ? touches / (double)w->bodies.count : 0;
+}
+
+// ---- the ledger
+
+static double lanes(const double lane[DEM_BLOCK_LANES])
+{
+    double sum = 0;
+    for (int i = 0; i < DEM_BLOCK_LANES; i++)
+        sum += lane[i];
+    return sum;
+}
+
+dem_energy dem_ledger(const dem_world *w)
+{
+    dem_energy e = {.work = w->push_work};
+    for (size_t i = 0; i < w->segment_count * (1 + DEM_WALL_FORMS); i++) {
+        e.friction += lanes(w->tallies[i].friction);
+        e.viscous += lanes(w->tallies[i].viscous);
+        e.work += lanes(w->tallies[i].work);
+    }
+    for (size_t i = 0; i < w->segment_count; i++) {
+        e.local += lanes(w->motion_tallies[i].local);
+        e.drag += lanes(w->motion_tallies[i].drag);
+    }
+    return e;
+}
+
+static void balance(dem_world *w)
+{
+    dem_energy *e = &w->views.figures.energy, spent = dem_ledger(w);
+    e->elastic = w->views.elastic;
+    double now = e->kinetic + e->rotational + e->potential + e->elastic;
+    if (w->steps == 0)
+        w->energy_start = now;
+    e->start = w->energy_start;
+    e->friction = spent.friction;
+    e->viscous = spent.viscous;
+    e->local = spent.local;
+    e->drag = spent.drag;
+    e->work = spent.work;
+    if (w->steps == 0)
+        w->potential_start = e->potential;
+    double most = fmax(fmax(e->kinetic + e->rotational, e->elastic), fabs(e->potential - w->potential_start));
+    most = fmax(most, fmax(fabs(e->work), e->friction + e->viscous + e->local + e->drag));
+    w->views.most_energy = fmax(w->views.most_energy, most);
+    double off = now + e->friction + e->viscous + e->local + e->drag - e->work - e->start;
+    e->error = NAN;
+    if (w->ledger || !(w->laws.damped || w->features.friction))
+        e->error = w->views.most_energy > 0 ? off / w->views.most_energy : 0;
+}
+
+static double largest_overlap(const dem_world *w)
+{
+    double largest = 0;
+    for (size_t i = 0; i < w->segment_count * (1 + DEM_WALL_FORMS); i++)
+        largest = fmax(largest, w->tallies[i].overlap_ratio);
+    return largest;
+}
+
+dem_status dem_world_measure(dem_world *w, dem_error *error)
+{
+    double begin = dem_clock();
+    dem_views *v = &w->views;
+    size_t n = w->bodies.count;
+    v->figures = (dem_figures){.time = dem_world_time(w), .step = w->steps};
+    v->elastic = 0;
+    v->contact_count = 0;
+    memset(v->force, 0, n * sizeof *v->force);
+    memset(v->moment, 0, n * sizeof *v->moment);
+    memset(v->coordination, 0, n * sizeof *v->coordination);
+    for (size_t i = 0; i < w->walls.count; i++)
+        v->walls[i] =
+            (dem_wall_view){.position = w->walls.items[i].position, .orientation = w->walls.items[i].orientation};
+    tour t = {UINT32_MAX, UINT32_MAX, false, false};
+    DEM_TRY(dem_visit_contacts(w, visit_contact, &t, error));
+    if (t.failed)
+        return dem_fail_memory(error);
+    gather(w);
+    balance(w);
+    v->figures.largest_overlap_ratio = fmax(largest_overlap(w), v->figures.overlap_ratio);
+    w->clocks[DEM_PASS_MEASURE].seconds += dem_clock() - begin;
+    return DEM_OK;
+}
+
+const dem_figures *dem_world_figures(const dem_world *w)
+{
+    return &w->views.figures;
+}
+
+dem_body_view dem_world_bodies(const dem_world *w)
+{
+    const dem_views *v = &w->views;
+    return (dem_body_view){w->bodies.count, v->shape, v->scale, v->mass,   v->position,    v->orientation,
+                           v->velocity,     v->spin,  v->force, v->moment, v->coordination};
+}
+
+const dem_contact *dem_world_contacts(const dem_world *w, size_t *count)
+{
+    *count = w->views.contact_count;
+    return w->views.contacts;
+}
+
+const dem_wall_view *dem_world_walls(const dem_world *w, size_t *count)
+{
+    *count = w->walls.count;
+    return w->views.walls;
+}

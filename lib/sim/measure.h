@@ -1,0 +1,20 @@
+/// Everything the views show, brought to the time of the positions by one evaluation of the contacts.
+#ifndef DEM_SIM_MEASURE_H
+#define DEM_SIM_MEASURE_H
+
+#include "sim/contacts.h"
+
+dem_status dem_views_create(dem_world *world, dem_error *error);
+void dem_views_release(dem_views *views);
+
+/// Receives one listed contact: its columns' place, and what it does. `form` -1: of a pair.
+typedef void (*dem_contact_visit)(void *user, dem_world *world, int form, const dem_contact_item *item,
+                                  const dem_contact_record *record);
+
+/// Evaluates all listed contacts of pairs and walls in the order of the lists, changing nothing.
+dem_status dem_visit_contacts(dem_world *world, dem_contact_visit visit, void *user, dem_error *error);
+
+/// Energy dissipated and done so far, from the tallies.
+dem_energy dem_ledger(const dem_world *world);
+
+#endif

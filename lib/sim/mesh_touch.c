@@ -1,0 +1,211 @@
+#include "sim/mesh_touch.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+#include "sim/state.h"
+
+static const double LOOK_AROUND = 0.5; // of the bounding radius: how far triangles are asked for, at least
+
+void dem_mesh_touches_release(dem_mesh_touches *t)
+{
+    free(t->items);
+    free(t->triangles);
+    free(t->last);
+    *t = (dem_mesh_touches){0};
+}
+
+// a sphere of a body in space
+static dem_ball space_ball(const dem_world *w, size_t row, size_t sphere)
+{
+    const double *s = w->templates.spheres[sphere];
+    double scale = body_scale(&w->bodies, row);
+    dem_vec3 arm = quat_rotate(body_orientation(&w->bodies, row), v3_scale(v3(s[0], s[1], s[2]), scale));
+    return (dem_ball){v3_add(body_position(&w->bodies, row), arm), s[3] * scale};
+}
+
+static bool add_triangle(dem_mesh_touches *t, uint32_t triangle)
+{
+    if (!dem_grow(&t->triangles, &t->triangle_capacity, t->triangle_count, sizeof *t->triangles))
+        return false;
+    t->triangles[t->triangle_count++] = triangle;
+    return true;
+}
+
+static bool add_touch(dem_mesh_touches *t, dem_mesh_touch touch)
+{
+    if (!dem_grow(&t->items, &t->capacity, t->count, sizeof *t->items))
+        return false;
+    t->items[t->count++] = touch;
+    return true;
+}
+
+// one ball against the triangles about its body; lowers the slack to the nearest that is not listed
+static bool search_ball(dem_world *w, size_t row, uint32_t sphere, uint32_t wall, const dem_ray_list *near,
+                        double margin, dem_mesh_touches *t, double *slack)
+{
+    const dem_wall *about = &w->walls.items[wall];
+    dem_ball ball = space_ball(w, row, sphere);
+    dem_vec3 centre = wall_from_space(about, ball.centre);
+    dem_mesh_touch touch = {.a = (uint32_t)row, .sphere = sphere, .wall = wall, .first = (uint32_t)t->triangle_count};
+    for (size_t i = 0; i < near->count; i++) {
+        dem_closest spot = triangle_closest(&about->mesh->triangles[near->items[i]], centre);
+        double gap = sqrt(spot.distance2) - ball.radius;
+        if (gap < margin) {
+            if (!add_triangle(t, near->items[i]))
+                return false;
+            gap = margin;
+        }
+        *slack = smaller(*slack, gap);
+    }
+    touch.count = (uint32_t)(t->triangle_count - touch.first);
+    touch.slot_count = touch.count < DEM_MESH_CONTACTS ? touch.count : DEM_MESH_CONTACTS;
+    return touch.count == 0 || add_touch(t, touch);
+}
+
+bool dem_mesh_touch_search(dem_world *w, size_t row, uint32_t wall, double margin, dem_mesh_touches *t, double *slack)
+{
+    const dem_template *shape = &w->templates.items[w->bodies.shape[row]];
+    double radius = w->bodies.radius[row], look = larger(margin, LOOK_AROUND * radius);
+    dem_vec3 centre = wall_from_space(&w->walls.items[wall], body_position(&w->bodies, row));
+    dem_ray_list near = {0};
+    bool good = dem_mesh_wall_near(w->walls.items[wall].mesh, centre, radius + look, &near);
+    *slack = look;
+    for (uint32_t i = shape->first; good && near.count && i < shape->first + shape->count; i++)
+        good = search_ball(w, row, i, wall, &near, margin, t, slack);
+    free(near.items);
+    return good;
+}
+
+static bool reserve_last(dem_mesh_touches *t, size_t slots)
+{
+    if (slots <= t->last_capacity)
+        return true;
+    size_t capacity = slots + slots / 2;
+    dem_mesh_contact *last = realloc(t->last, capacity * sizeof *last);
+    if (!last)
+        return false;
+    memset(last + t->last_capacity, 0, (capacity - t->last_capacity) * sizeof *last);
+    t->last = last;
+    t->last_capacity = capacity;
+    return true;
+}
+
+static bool take_last(const dem_mesh_touches *from, const dem_mesh_touch *old, dem_mesh_touches *to,
+                      dem_mesh_touch *touch)
+{
+    touch->last_count = old->last_count < touch->slot_count ? old->last_count : touch->slot_count;
+    if (!reserve_last(to, touch->slot + touch->slot_count))
+        return false;
+    memcpy(to->last + touch->slot, from->last + old->slot, touch->last_count * sizeof *to->last);
+    return true;
+}
+
+bool dem_mesh_touch_copy(const dem_mesh_touches *from, const dem_mesh_touch *old, uint32_t slot, dem_mesh_touches *to)
+{
+    dem_mesh_touch touch = *old;
+    touch.slot = slot;
+    touch.first = (uint32_t)to->triangle_count;
+    for (size_t i = old->first; i < old->first + old->count; i++)
+        if (!add_triangle(to, from->triangles[i]))
+            return false;
+    return take_last(from, old, to, &touch) && add_touch(to, touch);
+}
+
+bool dem_mesh_touch_remember(const dem_mesh_touches *old, dem_mesh_touches *t, size_t from)
+{
+    for (size_t i = from; i < t->count; i++) {
+        dem_mesh_touch *touch = &t->items[i];
+        if (!reserve_last(t, touch->slot + touch->slot_count))
+            return false;
+        for (size_t k = 0; k < old->count; k++) {
+            const dem_mesh_touch *o = &old->items[k];
+            if (o->a == touch->a && o->sphere == touch->sphere && o->wall == touch->wall &&
+                !take_last(old, o, t, touch))
+                return false;
+        }
+    }
+    return true;
+}
+
+// ---- in each step
+
+typedef struct slot_history {
+    double spring[3], loss;
+} slot_history;
+
+static slot_history get_history(const dem_contact_columns *c, size_t at)
+{
+    slot_history h = {.loss = c->loss ? c->loss[at] : 0};
+    for (int k = 0; c->spring[0] && k < 3; k++)
+        h.spring[k] = c->spring[k][at];
+    return h;
+}
+
+static void put_history(const dem_contact_columns *c, size_t at, const slot_history *h)
+{
+    for (int k = 0; c->spring[0] && k < 3; k++)
+        c->spring[k][at] = h->spring[k];
+    if (c->loss)
+        c->loss[at] = h->loss;
+}
+
+static void put_geometry(const dem_contact_columns *c, size_t at, dem_vec3 normal, double overlap, dem_vec3 arm)
+{
+    double g[7] = {normal.x, normal.y, normal.z, overlap, arm.x, arm.y, arm.z};
+    for (int k = 0; k < 7; k++)
+        c->geometry[k][at] = g[k];
+}
+
+// springs go to the slots of the contacts that continue theirs
+static void hand_over(const dem_contact_columns *c, const dem_segment *s, dem_mesh_touches *t, dem_mesh_touch *touch,
+                      const dem_mesh_contact *contacts, int count, double reach)
+{
+    int from[DEM_MESH_CONTACTS];
+    slot_history old[DEM_MESH_CONTACTS], none = {0};
+    dem_mesh_contacts_follow(t->last + touch->slot, (int)touch->last_count, contacts, count, reach, from);
+    for (uint32_t k = 0; k < touch->slot_count; k++)
+        old[k] = get_history(c, segment_place(s, touch->slot + k));
+    for (uint32_t k = 0; k < touch->slot_count; k++) {
+        bool goes_on = (int)k < count && from[k] >= 0;
+        put_history(c, segment_place(s, touch->slot + k), goes_on ? &old[from[k]] : &none);
+    }
+    for (int k = 0; k < count; k++)
+        t->last[touch->slot + (uint32_t)k] = contacts[k];
+    touch->last_count = (uint32_t)count;
+}
+
+static void measure_touch(dem_world *w, const dem_segment *s, dem_mesh_touches *t, dem_mesh_touch *touch)
+{
+    const dem_contact_columns *c = &w->wall_contacts[DEM_FORM_MESH].columns;
+    const dem_wall *wall = &w->walls.items[touch->wall];
+    dem_ball ball = space_ball(w, touch->a, touch->sphere);
+    dem_mesh_contact contacts[DEM_MESH_CONTACTS];
+    int count =
+        dem_mesh_wall_contacts(wall->mesh, t->triangles + touch->first, touch->count,
+                               wall_from_space(wall, ball.centre), ball.radius, contacts, (int)touch->slot_count);
+    if (count || touch->last_count) {
+        double overlap = count ? ball.radius - contacts[0].distance : 0;
+        double moved = body_stride(&w->bodies, touch->a, w->last_step) + w->sweep_speed * w->last_step;
+        hand_over(c, s, t, touch, contacts, count, moved + 0.1 * sqrt(ball.radius * overlap));
+    }
+    dem_vec3 x = body_position(&w->bodies, touch->a);
+    for (uint32_t k = 0; k < touch->slot_count; k++) {
+        size_t at = segment_place(s, touch->slot + k);
+        if ((int)k >= count) {
+            put_geometry(c, at, v3(0, 0, 0), -1, v3(0, 0, 0));
+            continue;
+        }
+        dem_vec3 arm = v3_add(v3_sub(ball.centre, x), wall_turn(wall, contacts[k].offset));
+        put_geometry(c, at, v3_scale(wall_turn(wall, contacts[k].normal), -1), ball.radius - contacts[k].distance, arm);
+    }
+}
+
+void dem_mesh_touch_measure(dem_world *w, size_t begin, size_t end)
+{
+    for (size_t i = begin; i < end; i++) {
+        dem_mesh_touches *t = &w->mesh_touches[i];
+        for (size_t k = 0; k < t->count; k++)
+            measure_touch(w, &w->wall_contacts[DEM_FORM_MESH].segments[i], t, &t->items[k]);
+    }
+}

@@ -1,0 +1,48 @@
+/// Balls near mesh walls: their candidate triangles between refreshes, and the contacts they make in each step.
+///
+/// The mesh knows geometry (mesh_wall.h); here a ball's contacts of one step are matched with those of the last, so
+/// that a spring goes on where the ball rolls from one triangle to the next.
+#ifndef DEM_SIM_MESH_TOUCH_H
+#define DEM_SIM_MESH_TOUCH_H
+
+#include "base/memory.h"
+#include "dem/world.h"
+#include "sim/mesh_wall.h"
+
+/// One ball near one mesh wall.
+typedef struct dem_mesh_touch {
+    uint32_t a, sphere, wall;  ///< rows
+    uint32_t slot, slot_count; ///< its places in the segment's list of mesh contacts
+    uint32_t first, count;     ///< its candidates in `triangles`
+    uint32_t last_count;       ///< contacts of the last step, in `last` from `slot`
+} dem_mesh_touch;
+
+/// Those of a segment, in the order of its list.
+typedef struct dem_mesh_touches {
+    dem_mesh_touch *items;
+    size_t count, capacity;
+    uint32_t *triangles;
+    size_t triangle_count, triangle_capacity;
+    dem_mesh_contact *last; ///< [slots], in the frame of the wall
+    size_t last_capacity;
+} dem_mesh_touches;
+
+void dem_mesh_touches_release(dem_mesh_touches *touches);
+
+/// Appends the balls of a body that are nearer to a mesh wall than the margin. `slack` receives how far the body may go
+/// before it is looked at again [m]. False: no memory.
+bool dem_mesh_touch_search(dem_world *world, size_t row, uint32_t wall, double margin, dem_mesh_touches *touches,
+                           double *slack);
+
+/// Appends a touch of another list with its triangles and last contacts, at another slot. False: no memory.
+bool dem_mesh_touch_copy(const dem_mesh_touches *from, const dem_mesh_touch *touch, uint32_t slot,
+                         dem_mesh_touches *to);
+
+/// Gives the touches from `from` on the last contacts that the same balls had in the old list. False: no memory.
+bool dem_mesh_touch_remember(const dem_mesh_touches *old, dem_mesh_touches *touches, size_t from);
+
+/// The contacts of the balls of the segments [begin, end) as they stand now: geometry columns and springs. Doing it
+/// again where nothing has moved changes nothing.
+void dem_mesh_touch_measure(dem_world *world, size_t begin, size_t end);
+
+#endif

@@ -1,0 +1,218 @@
+#include "sim/refresh.h"
+
+#include <omp.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/status.h"
+#include "sim/broad.h"
+
+static const double HORIZON = 80;                            // steps that a margin should last
+static const double MARGIN_LEAST = 0.01, MARGIN_MOST = 0.15; // of the length that suits the shape
+static const double REACH_SHARE = 0.4;                       // of the bounding radius, that length at least
+static const float HEIGHT_ERROR = 4e-6f;                     // of the bounding radii: what 32 bits may be off by
+
+static double margin_length(const dem_world *w, size_t row)
+{
+    const dem_template *t = &w->templates.items[w->bodies.shape[row]];
+    return larger(t->radius_min, REACH_SHARE * t->radius_out) * body_scale(&w->bodies, row);
+}
+
+double dem_refresh_margin(const dem_world *w, size_t a, size_t b, double strides)
+{
+    double length = smaller(margin_length(w, a), margin_length(w, b));
+    return larger(MARGIN_LEAST * length, smaller(MARGIN_MOST * length, HORIZON * strides));
+}
+
+double dem_refresh_limit(const dem_world *w, size_t row)
+{
+    const dem_pairs *pairs = &w->pairs;
+    double limit = w->bodies.path_then[row] + w->skin / 2;
+    if (w->bodies.wall_limit && !w->walls.sweep)
+        limit = smaller(limit, w->bodies.wall_limit[row]);
+    for (size_t i = pairs->adjacency_first[row]; i < pairs->adjacency_first[row + 1]; i++)
+        limit = smaller(limit, pairs->adjacency_limit[i]);
+    return limit;
+}
+
+static void set_side(const dem_world *w, size_t row, dem_cull_side *side)
+{
+    const dem_template *t = &w->templates.items[w->bodies.shape[row]];
+    double scale = body_scale(&w->bodies, row);
+    dem_quat q = body_orientation(&w->bodies, row);
+    dem_vec3 x = v3_scale(quat_rotate(q, v3(1, 0, 0)), scale), y = v3_scale(quat_rotate(q, v3(0, 1, 0)), scale);
+    dem_vec3 z = v3_scale(quat_rotate(q, v3(0, 0, 1)), scale);
+    size_t at = t->float_first;
+    *side = (dem_cull_side){.x = w->templates.x + at,
+                            .y = w->templates.y + at,
+                            .z = w->templates.z + at,
+                            .r = w->templates.r + at,
+                            .padded = t->float_padded,
+                            .axes = {(float)x.x, (float)y.x, (float)z.x, (float)x.y, (float)y.y, (float)z.y, (float)x.z,
+                                     (float)y.z, (float)z.z},
+                            .scale = (float)scale};
+}
+
+static bool reserve(dem_candidates *c, size_t more)
+{
+    if (c->count + more <= c->capacity)
+        return true;
+    size_t capacity = (c->count + more) * 3 / 2 + 256;
+    uint32_t *pairs = realloc(c->pairs, 2 * capacity * sizeof *pairs);
+    if (!pairs)
+        return false;
+    c->pairs = pairs;
+    c->capacity = capacity;
+    return true;
+}
+
+static dem_vec3 offset_of(const dem_world *w, const dem_pair *p)
+{
+    dem_vec3 d = v3_sub(body_position(&w->bodies, p->b), body_position(&w->bodies, p->a));
+    if (w->periodic) {
+        const double *shift = w->shifts + 4 * p->image;
+        d = v3_add(d, v3(shift[0], shift[1], shift[2]));
+    }
+    return d;
+}
+
+// the sphere pairs of two bodies by slabs
+static bool cull(const dem_world *w, const dem_pair *p, dem_vec3 d, double margin, dem_candidates *c, dem_fresh *out)
+{
+    dem_cull_job job = {.offset = {(float)d.x, (float)d.y, (float)d.z}, .margin = (float)margin, .work = c->work};
+    set_side(w, p->a, &job.a);
+    set_side(w, p->b, &job.b);
+    job.error = HEIGHT_ERROR * (float)(w->bodies.radius[p->a] + w->bodies.radius[p->b]);
+    dem_vec3 straight = v3_unit(d);
+    bool known = p->normal[0] <= 1;
+    float normal[3] = {known ? p->normal[0] : (float)straight.x, known ? p->normal[1] : (float)straight.y,
+                       known ? p->normal[2] : (float)straight.z};
+    for (size_t room = 64;; room = job.count) {
+        if (!reserve(c, room))
+            return false;
+        memcpy(job.normal, normal, sizeof normal);
+        job.pairs = c->pairs + 2 * c->count;
+        job.capacity = c->capacity - c->count;
+        w->kernels->cull(&job);
+        if (job.count <= job.capacity)
+            break;
+    }
+    memcpy(out->normal, job.normal, sizeof normal);
+    out->count = job.count;
+    c->count += job.count;
+    out->slack = job.count == 0 && job.gap > margin ? job.gap : margin;
+    return true;
+}
+
+static bool same_candidates(const dem_world *w, const dem_pair *p, const dem_fresh *fresh)
+{
+    if (fresh->count != p->count)
+        return false;
+    const dem_contacts *contacts = &w->contacts;
+    const dem_segment *s = &contacts->segments[p->a / DEM_SEGMENT];
+    const uint32_t *pairs = w->candidates[fresh->thread].pairs + 2 * fresh->begin;
+    uint32_t first_a = w->templates.items[w->bodies.shape[p->a]].first;
+    uint32_t first_b = w->templates.items[w->bodies.shape[p->b]].first;
+    for (size_t i = 0; i < fresh->count; i++) {
+        size_t at = segment_place(s, p->start + i);
+        if (contacts->columns.sphere_a[at] != first_a + pairs[2 * i] ||
+            contacts->columns.sphere_b[at] != first_b + pairs[2 * i + 1])
+            return false;
+    }
+    return true;
+}
+
+static bool look_at_pair(dem_world *w, dem_fresh *fresh)
+{
+    const dem_pair *p = &w->pairs.items[fresh->pair];
+    const dem_bodies *b = &w->bodies;
+    dem_candidates *c = &w->candidates[fresh->thread];
+    dem_vec3 d = offset_of(w, p);
+    double strides = body_stride(b, p->a, w->next_step) + body_stride(b, p->b, w->next_step);
+    double margin = dem_refresh_margin(w, p->a, p->b, strides);
+    double apart = v3_norm(d) * (1 - 1e-14) - b->radius[p->a] - b->radius[p->b];
+    fresh->begin = c->count;
+    fresh->count = 0;
+    fresh->slack = apart;
+    memcpy(fresh->normal, p->normal, sizeof fresh->normal);
+    if (apart < margin) {
+        bool both_centred = w->templates.items[b->shape[p->a]].centred && w->templates.items[b->shape[p->b]].centred;
+        if (!both_centred) {
+            if (!cull(w, p, d, margin, c, fresh))
+                return false;
+        } else {
+            if (!reserve(c, 1))
+                return false;
+            c->pairs[2 * c->count] = c->pairs[2 * c->count + 1] = 0;
+            c->count++;
+            fresh->count = 1;
+            fresh->slack = margin;
+        }
+    }
+    fresh->changed = !same_candidates(w, p, fresh);
+    if (!fresh->changed)
+        c->count = fresh->begin;
+    return true;
+}
+
+static bool collect_expired(dem_world *w)
+{
+    const dem_bodies *b = &w->bodies;
+    dem_pairs *pairs = &w->pairs;
+    w->fresh_count = 0;
+    for (size_t k = 0; k < w->asked_count; k++) {
+        uint32_t row = w->asked[k];
+        for (size_t i = pairs->adjacency_first[row]; i < pairs->adjacency_first[row + 1]; i++) {
+            uint32_t pair = pairs->adjacency[i];
+            // a pair that both bodies ask for is taken once
+            if (b->path[row] <= pairs->adjacency_limit[i] || pairs->fresh[pair])
+                continue;
+            if (!dem_grow(&w->fresh, &w->fresh_capacity, w->fresh_count, sizeof *w->fresh))
+                return false;
+            w->fresh[w->fresh_count++] = (dem_fresh){.pair = pair};
+            pairs->fresh[pair] = (uint32_t)w->fresh_count;
+        }
+    }
+    return true;
+}
+
+// each body's share of the slack in proportion to its speed
+static void apply(dem_world *w, const dem_fresh *fresh, size_t index)
+{
+    dem_bodies *b = &w->bodies;
+    dem_pairs *pairs = &w->pairs;
+    dem_pair *p = &pairs->items[fresh->pair];
+    double va = body_stride(b, p->a, w->next_step), vb = body_stride(b, p->b, w->next_step);
+    double even = 0.05 * (va + vb) + 1e-30, share = (va + even) / (va + vb + 2 * even);
+    double limit_a = b->path[p->a] + fresh->slack * share, limit_b = b->path[p->b] + fresh->slack * (1 - share);
+    pairs->adjacency_limit[p->adjacent_a] = limit_a;
+    pairs->adjacency_limit[p->adjacent_b] = limit_b;
+    b->limit[p->a] = smaller(b->limit[p->a], limit_a);
+    b->limit[p->b] = smaller(b->limit[p->b], limit_b);
+    memcpy(p->normal, fresh->normal, sizeof p->normal);
+    if (fresh->changed) {
+        pairs->fresh[fresh->pair] = (uint32_t)index + 1;
+        w->contacts.segments[p->a / DEM_SEGMENT].dirty = true;
+    } else
+        pairs->fresh[fresh->pair] = 0;
+}
+
+dem_status dem_refresh(dem_world *w, dem_error *error)
+{
+    bool good = collect_expired(w);
+    for (int t = 0; t < w->threads; t++)
+        w->candidates[t].count = 0;
+    int count = (int)w->fresh_count;
+#pragma omp parallel for schedule(static) num_threads(w->threads) if (count > 256 && w->threads > 1) reduction(&& : good)
+    for (int i = 0; i < count; i++) {
+        w->fresh[i].thread = (uint32_t)omp_get_thread_num();
+        good = look_at_pair(w, &w->fresh[i]) && good;
+    }
+    if (!good)
+        return dem_fail_memory(error);
+    for (size_t i = 0; i < w->fresh_count; i++)
+        apply(w, &w->fresh[i], i);
+    for (size_t k = 0; k < w->asked_count; k++)
+        w->bodies.limit[w->asked[k]] = dem_refresh_limit(w, w->asked[k]);
+    return DEM_OK;
+}

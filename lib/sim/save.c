@@ -1,0 +1,343 @@
+// The state as one block, from which a run goes on bit for bit. The order of sums depends on what is listed, so lists
+// and their limits are part of the state. What follows from the scene is made anew.
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/status.h"
+#include "base/text.h"
+#include "sim/bodies.h"
+#include "sim/broad.h"
+#include "sim/contacts.h"
+
+enum { LAYOUT = 1 };
+
+static uint64_t hash_bytes(uint64_t hash, const void *bytes, size_t size)
+{
+    // FNV-1a over whole words: fast, and any altered bit shows
+    const unsigned char *p = bytes;
+    for (; size >= 8; size -= 8, p += 8) {
+        uint64_t word;
+        memcpy(&word, p, 8);
+        hash = (hash ^ word) * 0x100000001b3;
+        hash ^= hash >> 29;
+    }
+    for (; size; size--)
+        hash = (hash ^ *p++) * 0x100000001b3;
+    return hash;
+}
+#define HASH_START 0xcbf29ce484222325
+
+/// What must be alike in the saved world and the one that takes it up, then what is taken.
+typedef struct block_head {
+    uint64_t layout, constants, bodies, shapes, walls, laws, segments;
+    dem_features features;
+    unsigned char unused[8 - sizeof(dem_features) % 8];
+    uint64_t steps, epoch_steps, exact_then;
+    double epoch_time, last_step, next_step, wall_path, sweep_speed, push_work, stable_step, crude_then, damping_most;
+    double energy_start, potential_start, most_energy, skin;
+    uint64_t pairs;
+} block_head;
+
+// what the scene fixes: shapes, laws, walls, loads
+static uint64_t hash_constants(const dem_world *w)
+{
+    uint64_t h = hash_bytes(HASH_START, w->templates.spheres, w->templates.sphere_count * sizeof *w->templates.spheres);
+    for (size_t i = 0; i < w->templates.count; i++) {
+        const dem_template *t = &w->templates.items[i];
+        double numbers[5] = {t->mass, t->inertia[0], t->inertia[1], t->inertia[2], t->material};
+        h = hash_bytes(h, numbers, sizeof numbers);
+    }
+    h = hash_bytes(h, w->laws.rows, w->laws.count * LAW_SLOTS * sizeof(double));
+    h = hash_bytes(h, w->laws.table, w->laws.material_count * w->laws.material_count * sizeof *w->laws.table);
+    for (size_t i = 0; i < w->walls.count; i++) {
+        const dem_wall *wall = &w->walls.items[i];
+        dem_vec3 numbers[6] = {wall->point, wall->normal, wall->velocity, wall->through, wall->spin,
+                               {wall->radius, wall->form, wall->material}};
+        h = hash_bytes(h, numbers, sizeof numbers);
+        if (wall->mesh)
+            h = hash_bytes(h, wall->mesh->mesh.vertices, wall->mesh->mesh.vertex_count * sizeof(dem_vec3));
+    }
+    dem_vec3 loads[4] = {w->gravity, w->domain.low, w->domain.high,
+                         {w->damping.local, w->damping.viscous, w->damping.local_frame + 2 * w->damping.exclude_gravity}};
+    h = hash_bytes(h, loads, sizeof loads);
+    double numbers[5] = {w->time_def.step, w->multiple, w->domain.periodic[0], w->domain.periodic[1],
+                         w->domain.periodic[2]};
+    return hash_bytes(h, numbers, sizeof numbers);
+}
+
+static block_head head_of(const dem_world *w)
+{
+    block_head h;
+    memset(&h, 0, sizeof h);
+    h.layout = LAYOUT;
+    h.constants = hash_constants(w);
+    h.bodies = w->bodies.count;
+    h.shapes = w->shape_count;
+    h.walls = w->walls.count;
+    h.laws = w->laws.count;
+    h.segments = w->segment_count;
+    h.features = w->features;
+    h.steps = w->steps;
+    h.epoch_steps = w->epoch_steps;
+    h.exact_then = w->exact_then;
+    h.epoch_time = w->epoch_time;
+    h.last_step = w->last_step;
+    h.next_step = w->next_step;
+    h.wall_path = w->wall_path;
+    h.sweep_speed = w->sweep_speed;
+    h.push_work = w->push_work;
+    h.stable_step = w->stable_step;
+    h.crude_then = w->crude_then;
+    h.damping_most = w->damping_most;
+    h.energy_start = w->energy_start;
+    h.potential_start = w->potential_start;
+    h.most_energy = w->views.most_energy;
+    h.skin = w->skin;
+    h.pairs = w->pairs.count;
+    return h;
+}
+
+static void take_head(dem_world *w, const block_head *h)
+{
+    w->steps = h->steps;
+    w->epoch_steps = h->epoch_steps;
+    w->exact_then = h->exact_then;
+    w->epoch_time = h->epoch_time;
+    w->last_step = h->last_step;
+    w->next_step = h->next_step;
+    w->wall_path = h->wall_path;
+    w->sweep_speed = h->sweep_speed;
+    w->push_work = h->push_work;
+    w->stable_step = h->stable_step;
+    w->crude_then = h->crude_then;
+    w->damping_most = h->damping_most;
+    w->energy_start = h->energy_start;
+    w->potential_start = h->potential_start;
+    w->views.most_energy = h->most_energy;
+    w->skin = h->skin;
+}
+
+// ---- one walk over the state writes and reads it
+
+typedef struct cursor {
+    dem_buffer *out; // writing
+    const char *in;  // reading
+    size_t left;
+    bool failed;
+} cursor;
+
+static void pass(cursor *c, void *bytes, size_t size)
+{
+    if (c->out)
+        dem_buffer_bytes(c->out, bytes, size);
+    else if (c->failed || size > c->left)
+        c->failed = true;
+    else {
+        if (size)
+            memcpy(bytes, c->in, size);
+        c->in += size;
+        c->left -= size;
+    }
+}
+
+static uint64_t pass_count(cursor *c, uint64_t count)
+{
+    pass(c, &count, sizeof count);
+    return c->failed ? 0 : count;
+}
+
+// an array that is allocated anew when it is read
+static void pass_array(cursor *c, void *array, size_t *count, size_t width)
+{
+    void *p = *(void **)array;
+    uint64_t n = pass_count(c, *count);
+    if (!c->out) {
+        if (c->failed || n > c->left / (width ? width : 1)) {
+            c->failed = true;
+            return;
+        }
+        free(p);
+        p = *(void **)array = dem_alloc(n, width);
+        *count = n;
+        if (!p) {
+            c->failed = true;
+            return;
+        }
+    }
+    pass(c, p, n * width);
+}
+
+static void pass_bodies(cursor *c, dem_world *w)
+{
+    dem_bodies *b = &w->bodies;
+#define COLUMN(type, name, width, unit, when, about)                                                                   \
+    if (b->name)                                                                                                       \
+        pass(c, b->name, b->padded *(width) * sizeof(type));
+    DEM_BODY_COLUMNS(COLUMN)
+#undef COLUMN
+    pass(c, b->place, b->count * sizeof *b->place);
+}
+
+static void pass_pairs(cursor *c, dem_world *w)
+{
+    dem_pairs *p = &w->pairs;
+    size_t n = w->bodies.count, ends = n + 1, adjacency = 2 * p->count, limits = adjacency, firsts = ends;
+    pass_array(c, &p->items, &p->count, sizeof *p->items);
+    p->capacity = p->count;
+    pass_array(c, &p->first, &firsts, sizeof *p->first);
+    pass_array(c, &p->adjacency_first, &ends, sizeof *p->adjacency_first);
+    pass_array(c, &p->adjacency, &adjacency, sizeof *p->adjacency);
+    pass_array(c, &p->adjacency_limit, &limits, sizeof *p->adjacency_limit);
+    if (!c->out && !c->failed) {
+        free(p->fresh);
+        p->fresh = dem_alloc_zero(p->count, sizeof *p->fresh);
+        c->failed = !p->fresh || firsts != n + 1 || ends != n + 1 || adjacency != 2 * p->count || limits != adjacency;
+    }
+}
+
+// the place of a segment and its contacts; room in between is not kept
+static void pass_contacts(cursor *c, dem_world *w, dem_contacts *contacts, int form)
+{
+    size_t *needed = dem_alloc_zero(w->segment_count, sizeof *needed);
+    if (!needed) {
+        c->failed = true;
+        return;
+    }
+    for (size_t i = 0; i < w->segment_count; i++) {
+        dem_segment *s = &contacts->segments[i];
+        needed[i] = pass_count(c, s->end - s->begin);
+        if (!c->out) {
+            c->failed |= needed[i] % DEM_BLOCK_LANES != 0 || needed[i] > c->left;
+            s->dirty = true;
+            s->end = s->begin;
+        }
+    }
+    if (!c->out && !c->failed)
+        c->failed = !dem_contacts_reserve(w, contacts, form, needed);
+    for (size_t i = 0; i < w->segment_count && !c->failed; i++) {
+        dem_segment *s = &contacts->segments[i];
+        s->end = s->begin + needed[i];
+        if (!c->out)
+            s->dirty = false;
+#define COLUMN(type, name, unit, when, about)                                                                          \
+    if (contacts->columns.name)                                                                                        \
+        pass(c, (type *)contacts->columns.name + s->begin, (s->end - s->begin) * sizeof(type));
+        DEM_CONTACT_COLUMNS(COLUMN)
+#undef COLUMN
+    }
+    free(needed);
+}
+
+static void pass_touches(cursor *c, dem_world *w)
+{
+    for (size_t i = 0; w->mesh_touches && i < w->segment_count; i++) {
+        dem_mesh_touches *t = &w->mesh_touches[i];
+        pass_array(c, &t->items, &t->count, sizeof *t->items);
+        pass_array(c, &t->triangles, &t->triangle_count, sizeof *t->triangles);
+        pass_array(c, &t->last, &t->last_capacity, sizeof *t->last);
+        if (!c->out) {
+            t->capacity = t->count;
+            t->triangle_capacity = t->triangle_count;
+        }
+    }
+}
+
+static void pass_state(cursor *c, dem_world *w)
+{
+    pass_bodies(c, w);
+    pass_pairs(c, w);
+    pass_contacts(c, w, &w->contacts, -1);
+    for (int form = 0; form < DEM_WALL_FORMS; form++)
+        if (w->wall_contacts[form].segments)
+            pass_contacts(c, w, &w->wall_contacts[form], form);
+    pass_touches(c, w);
+    pass(c, w->tallies, w->segment_count * (1 + DEM_WALL_FORMS) * sizeof *w->tallies);
+    pass(c, w->motion_tallies, w->segment_count * sizeof *w->motion_tallies);
+}
+
+dem_status dem_world_save(const dem_world *world, void **bytes, size_t *size, dem_error *error)
+{
+    dem_world *w = (dem_world *)world; // the walk only reads when it writes
+    dem_buffer out = {0};
+    cursor c = {.out = &out};
+    block_head head = head_of(w);
+    pass(&c, &head, sizeof head);
+    pass_state(&c, w);
+    uint64_t hash = hash_bytes(HASH_START, out.data, out.size);
+    dem_buffer_bytes(&out, &hash, sizeof hash);
+    if (out.failed || c.failed) {
+        dem_buffer_release(&out);
+        return dem_fail_memory(error);
+    }
+    *bytes = out.data;
+    *size = out.size;
+    return DEM_OK;
+}
+
+static dem_status refuse(dem_error *error, const char *what)
+{
+    return dem_fail(error, DEM_BAD_INPUT, "the saved state %s", what);
+}
+
+// rows and places that the kernels will follow without asking
+static bool sound(const dem_world *w)
+{
+    size_t n = w->bodies.count;
+    for (size_t i = 0; i < n; i++)
+        if (w->bodies.place[i] >= n || w->bodies.shape[i] >= w->shape_count)
+            return false;
+    for (size_t i = 0; i < w->pairs.count; i++) {
+        const dem_pair *p = &w->pairs.items[i];
+        if (p->a >= n || p->b >= n || p->image >= DEM_IMAGES || p->adjacent_a >= 2 * w->pairs.count ||
+            p->adjacent_b >= 2 * w->pairs.count)
+            return false;
+    }
+    return true;
+}
+
+dem_status dem_world_restore(dem_world *w, const void *bytes, size_t size, dem_error *error)
+{
+    block_head head, own = head_of(w);
+    uint64_t hash;
+    if (size < sizeof head + sizeof hash)
+        return refuse(error, "is cut short; take an older checkpoint");
+    memcpy(&hash, (const char *)bytes + size - sizeof hash, sizeof hash);
+    if (hash != hash_bytes(HASH_START, bytes, size - sizeof hash))
+        return refuse(error, "is damaged; take an older checkpoint");
+    memcpy(&head, bytes, sizeof head);
+    if (head.layout != LAYOUT)
+        return refuse(error, "is of another version; run it with the program that wrote it");
+    bool same = head.constants == own.constants && head.bodies == own.bodies && head.shapes == own.shapes && head.walls == own.walls &&
+                head.laws == own.laws && head.segments == own.segments &&
+                memcmp(&head.features, &own.features, sizeof own.features) == 0;
+    if (!same)
+        return refuse(error, "belongs to another scene; resume with the scene it was made from");
+    cursor c = {.in = (const char *)bytes + sizeof head, .left = size - sizeof head - sizeof hash};
+    take_head(w, &head);
+    pass_state(&c, w);
+    if (c.failed || c.left || !sound(w))
+        return refuse(error, "does not fit the scene; resume with the scene it was made from");
+    dem_walls_place(&w->walls, dem_world_time(w));
+    // where momenta of other domains go is made anew
+    for (size_t i = 0; i < w->segment_count; i++)
+        w->contacts.segments[i].dirty = true;
+    return dem_contacts_rebuild(w, error);
+}
+
+uint64_t dem_world_hash(const dem_world *w)
+{
+    const dem_bodies *b = &w->bodies;
+    uint64_t hash = hash_bytes(HASH_START, &w->steps, sizeof w->steps);
+    hash = hash_bytes(hash, b->bodies, b->count * DEM_BODY_ROW * sizeof *b->bodies);
+    hash = hash_bytes(hash, b->momentum, b->count * DEM_ROW * sizeof *b->momentum);
+    hash = hash_bytes(hash, b->path, b->count * sizeof *b->path);
+    for (int form = -1; form < DEM_WALL_FORMS; form++) {
+        const dem_contacts *contacts = form < 0 ? &w->contacts : &w->wall_contacts[form];
+        for (size_t i = 0; contacts->segments && i < w->segment_count; i++) {
+            const dem_segment *s = &contacts->segments[i];
+            for (int k = 0; contacts->columns.spring[0] && k < 3; k++)
+                hash = hash_bytes(hash, contacts->columns.spring[k] + s->begin, (s->end - s->begin) * sizeof(double));
+        }
+    }
+    return hash;
+}

@@ -1,0 +1,237 @@
+/// What a world holds: bodies in rows and columns, near pairs, and the contacts they list, by segments of bodies.
+///
+/// Bodies keep their row from the start; `dem_bodies.place` says where the caller's bodies stand. Behind the last body
+/// come rows that fill up the blocks of 8 and two dummies far from everything and each other, which idle contacts name.
+#ifndef DEM_SIM_STATE_H
+#define DEM_SIM_STATE_H
+
+#include "base/memory.h"
+#include "dem/world.h"
+#include "math/quat.h"
+#include "sim/kernels.h"
+#include "sim/laws.h"
+#include "sim/mesh_touch.h"
+#include "sim/template.h"
+#include "sim/walls.h"
+
+enum {
+    DEM_SEGMENT = 64,     ///< bodies whose contacts stand together
+    DEM_IMAGES_ASIDE = 7, ///< images of a periodic side in each direction
+    DEM_IMAGES_ROW = 2 * DEM_IMAGES_ASIDE + 1,
+    DEM_IMAGES = DEM_IMAGES_ROW * DEM_IMAGES_ROW * DEM_IMAGES_ROW,
+};
+
+/// Columns of the bodies: type, name, numbers a body, unit, needed when (in terms of a world w), what it is. The list
+/// makes allocation, checkpoint, hash and --explain. Written by the motion pass (bodies, momentum, path), the lists
+/// (limits, path_then, wraps) and the contacts (momentum).
+#define DEM_BODY_COLUMNS(X)                                                                                            \
+    X(double, bodies, 16, "m, -, m/s, rad/s", true, "pose and motion")                                                 \
+    X(double, momentum, 8, "kg m/s, kg m2/s", true, "momenta, half a step before")                                     \
+    X(double, inertia, 8, "1/kg, 1/(kg m2), m", true, "inverse mass and moments, reach")                               \
+    X(double, path, 1, "m", true, "path of the fastest surface point")                                                 \
+    X(double, limit, 1, "m", true, "path at which the lists are looked at")                                            \
+    X(double, path_then, 1, "m", true, "path at the last search for pairs")                                            \
+    X(double, radius, 1, "m", true, "bounding radius")                                                                 \
+    X(uint32_t, shape, 1, "-", true, "index of the shape")                                                             \
+    X(double, wall_limit, 1, "m", (w)->walls.count > 0, "path at which the wall lists are looked at")                  \
+    X(int32_t, wraps, 3, "-", (w)->periodic, "how often a periodic side was crossed")                                  \
+    X(double, before, 8, "kg m/s, kg m2/s", (w)->damping.local > 0 || (w)->damping.viscous > 0,                        \
+      "momenta before the contacts")
+
+typedef struct dem_bodies {
+    size_t count, padded; ///< padded: to 8, with the two dummies
+    uint32_t dummy;       ///< row of the first dummy; the second follows
+    size_t momentum_rows; ///< rows of `momentum`: those of the bodies, then slots
+#define COLUMN(type, name, width, unit, when, about) type *name;
+    DEM_BODY_COLUMNS(COLUMN)
+#undef COLUMN
+    uint32_t *place; ///< [count] row of the i-th body of the scene
+} dem_bodies;
+
+/// Two bodies whose bounding balls are nearer than the skin; a < b, or a == b across a periodic side.
+typedef struct dem_pair {
+    uint32_t a, b;
+    uint32_t start, count; ///< its contacts in the list of the segment of a
+    uint32_t adjacent_a, adjacent_b;
+    float normal[3]; ///< direction from a to b between their nearest spheres; [0] > 1: not known yet
+    uint32_t image;  ///< of b
+} dem_pair;
+
+typedef struct dem_pairs {
+    dem_pair *items; ///< sorted by a, b, image
+    size_t count, capacity;
+    uint32_t *first;           ///< [bodies + 1] of the pairs of a
+    uint32_t *adjacency_first; ///< [bodies + 1]
+    uint32_t *adjacency;       ///< [2 count] pairs of a body, as a or b
+    double *adjacency_limit;   ///< [2 count] path of that body at which the pair is looked at
+    uint32_t *fresh;           ///< [count] 1 + index into the results of the present refresh; 0: as it was
+} dem_pairs;
+
+/// Place of the contacts of DEM_SEGMENT bodies (or of their wall contacts of one form) in the columns.
+typedef struct dem_segment {
+    size_t begin, end, capacity;                  ///< multiples of 8
+    size_t slot_begin, slot_count, slot_capacity; ///< momenta for bodies of other domains
+    bool dirty;
+} dem_segment;
+
+typedef struct dem_contacts {
+    dem_contact_columns columns;
+    size_t capacity; ///< of each column
+    dem_segment *segments;
+    uint32_t *slot_body; ///< [slots] whose momentum a slot belongs to
+    size_t slot_capacity;
+} dem_contacts;
+
+/// Sphere pairs that a refresh has found, by thread.
+typedef struct dem_candidates {
+    uint32_t *pairs; ///< [2 capacity] sphere of a, sphere of b, counted within their shapes
+    size_t count, capacity;
+    float *work;
+} dem_candidates;
+
+typedef struct dem_fresh {
+    uint32_t pair, thread;
+    size_t begin, count; ///< in the candidates of `thread`
+    double slack;        ///< path that may be used up before it is looked at again [m]
+    float normal[3];
+    bool changed; ///< the set of candidates is another one
+} dem_fresh;
+
+typedef enum dem_pass {
+    DEM_PASS_PAIRS,
+    DEM_PASS_WALLS,
+    DEM_PASS_MOTION,
+    DEM_PASS_SEARCH,
+    DEM_PASS_REFRESH,
+    DEM_PASS_LISTS,
+    DEM_PASS_STEP,
+    DEM_PASS_MEASURE,
+    DEM_PASSES
+} dem_pass;
+
+/// What measuring fills; see dem/world.h.
+typedef struct dem_views {
+    uint32_t *shape, *coordination, *by_row; ///< by_row: body of a row
+    double *scale, *mass;
+    dem_vec3 *position, *velocity, *spin, *force, *moment;
+    dem_quat *orientation;
+    dem_contact *contacts;
+    size_t contact_count, contact_capacity;
+    dem_wall_view *walls;
+    dem_figures figures;
+    dem_contact_record *records;
+    size_t record_capacity;
+    double elastic;
+    double most_energy; ///< largest of kinetic, elastic and change of potential energy seen [J]
+} dem_views;
+
+typedef struct dem_search dem_search;
+
+typedef struct dem_push {
+    size_t row;
+    dem_vec3 force, moment;
+} dem_push;
+
+struct dem_world {
+    // constant
+    dem_vec3 gravity;
+    dem_domain_def domain;
+    bool periodic;
+    dem_damping_def damping;
+    dem_multiple multiple;
+    dem_time_def time_def;
+    bool ledger;
+    dem_clump **clumps;
+    char **shape_names;
+    size_t shape_count;
+    dem_templates templates;
+    dem_laws laws;
+    dem_features features;
+    const dem_kernels *kernels;
+    const dem_contact_instance *instance, *wall_instance;
+    double *shifts;            ///< [4 an image] (periodic)
+    double skin, margin_least; ///< of the search; of the candidates, by radius: see refresh.h [m]
+    int threads;
+    size_t domain_bodies; ///< bodies of a domain: their momenta are written by one thread
+    // state
+    dem_bodies bodies;
+    dem_pairs pairs;
+    dem_contacts contacts, wall_contacts[DEM_WALL_FORMS];
+    dem_mesh_touches *mesh_touches; ///< [segments]
+    dem_walls walls;
+    size_t segment_count;
+    uint64_t steps, epoch_steps; ///< the time is epoch_time + (steps - epoch_steps) next_step
+    double epoch_time, last_step, next_step;
+    double wall_path;                 ///< what sweeping walls add to paths [m]
+    double sweep_speed;               ///< of sweeping walls about the bodies, at most [m/s]
+    bool started;                     ///< momenta have been taken half a step back
+    dem_tally *tallies;               ///< [segments * (1 + DEM_WALL_FORMS)]
+    dem_motion_tally *motion_tallies; ///< [segments]
+    double push_work;
+    double stable_step, crude_then; ///< the bound, and its cheap twin, when last looked at
+    double damping_most;            ///< largest c / k of any contact so far [s]
+    uint64_t exact_then;
+    double energy_start, potential_start; ///< [J]
+    // work space
+    dem_search *search;
+    uint32_t *asked; ///< [padded]
+    size_t asked_count, *part_asked;
+    size_t *parts; ///< [threads + 1] first segment of each
+    dem_fresh *fresh;
+    size_t fresh_count, fresh_capacity;
+    dem_candidates *candidates; ///< [threads]
+    dem_push *pushes;
+    size_t push_count, push_capacity;
+    dem_views views;
+    dem_pass_time clocks[DEM_PASSES];
+    uint64_t searches; ///< for pairs, since the world was made
+    double warned[8];
+    const dem_ctx *ctx;
+    dem_ctx own_ctx;
+};
+
+/// The k-th contact of a segment's list: neighbours in the list stand in different blocks of 8, so that the lanes of a
+/// block mostly hit different bodies.
+static inline size_t segment_place(const dem_segment *s, size_t k)
+{
+    size_t blocks = (s->end - s->begin) / DEM_BLOCK_LANES;
+    return s->begin + (k % blocks) * DEM_BLOCK_LANES + k / blocks;
+}
+
+static inline double *body_pose(const dem_bodies *b, size_t row)
+{
+    return b->bodies + DEM_BODY_ROW * row;
+}
+static inline dem_vec3 body_position(const dem_bodies *b, size_t row)
+{
+    const double *p = body_pose(b, row);
+    return v3(p[0], p[1], p[2]);
+}
+static inline dem_quat body_orientation(const dem_bodies *b, size_t row)
+{
+    const double *p = body_pose(b, row);
+    return (dem_quat){p[3], p[4], p[5], p[6]};
+}
+static inline double body_scale(const dem_bodies *b, size_t row)
+{
+    return body_pose(b, row)[7];
+}
+/// Bound of the path of the fastest surface point in one step [m].
+static inline double body_stride(const dem_bodies *b, size_t row, double step)
+{
+    const double *m = body_pose(b, row) + 8;
+    double reach = b->inertia[DEM_ROW * row + 4];
+    double turning = (m[3] * m[3] + m[4] * m[4] + m[5] * m[5]) * (reach * reach);
+    return step * sqrt(2 * (m[0] * m[0] + m[1] * m[1] + m[2] * m[2] + turning));
+}
+
+static inline dem_rows world_rows(const dem_world *w)
+{
+    return (dem_rows){w->bodies.bodies, w->bodies.momentum, w->bodies.inertia, &w->templates.spheres[0][0],
+                      w->shifts,        w->laws.rows,       w->walls.rows};
+}
+
+/// Seconds since some start.
+double dem_clock(void);
+
+#endif

@@ -1,0 +1,266 @@
+// Bodies are looked at one by one, but lists are rebuilt by segment: the items of bodies that were not looked at are
+// taken over. A new list that equals the old one is dropped.
+#include "sim/wall_lists.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/status.h"
+#include "sim/mesh_touch.h"
+#include "sim/refresh.h"
+
+static const double WALL_STRIDES = 2; // a wall's margin lasts longer than that of pairs: its list is cheap
+
+// a segment's new list of one form
+typedef struct new_list {
+    size_t segment;
+    dem_wall_form form;
+    size_t begin, count; // in the items
+    dem_mesh_touches touches;
+} new_list;
+
+typedef struct wall_look {
+    dem_world *w;
+    dem_contact_item *items;
+    size_t count, capacity;
+    new_list *lists;
+    size_t list_count, list_capacity;
+    bool failed;
+} wall_look;
+
+static void add_item(wall_look *look, const dem_contact_item *item)
+{
+    if (!dem_grow(&look->items, &look->capacity, look->count, sizeof *item))
+        look->failed = true;
+    else
+        look->items[look->count++] = *item;
+}
+
+static dem_contact_item wall_item(const dem_world *w, size_t row, uint32_t sphere, uint32_t wall)
+{
+    uint32_t material = w->templates.items[w->bodies.shape[row]].material;
+    return (dem_contact_item){.a = (uint32_t)row,
+                              .sphere_a = sphere,
+                              .sphere_b = wall,
+                              .law = w->laws.table[material * w->laws.material_count + w->walls.items[wall].material]};
+}
+
+// the spheres of the body that are nearer to a plane or cylinder than the margin; returns the slack
+static double look_at_smooth(wall_look *look, size_t row, uint32_t wall, double margin)
+{
+    const dem_world *w = look->w;
+    const dem_template *shape = &w->templates.items[w->bodies.shape[row]];
+    dem_vec3 x = body_position(&w->bodies, row);
+    double apart = dem_wall_distance(&w->walls, wall, x) - w->bodies.radius[row], slack = INFINITY;
+    if (apart > margin)
+        return apart;
+    dem_quat q = body_orientation(&w->bodies, row);
+    double scale = body_scale(&w->bodies, row);
+    for (uint32_t i = shape->first; i < shape->first + shape->count; i++) {
+        const double *s = w->templates.spheres[i];
+        dem_vec3 centre = v3_add(x, quat_rotate(q, v3_scale(v3(s[0], s[1], s[2]), scale)));
+        double gap = dem_wall_distance(&w->walls, wall, centre) - s[3] * scale;
+        if (gap < margin) {
+            dem_contact_item item = wall_item(w, row, i, wall);
+            add_item(look, &item);
+            gap = margin;
+        }
+        slack = smaller(slack, gap);
+    }
+    return slack;
+}
+
+// a slot for each contact that a ball may have at once
+static double look_at_mesh(wall_look *look, size_t row, uint32_t wall, double margin, size_t begin,
+                           dem_mesh_touches *touches)
+{
+    double slack = 0;
+    size_t before = touches->count;
+    look->failed |= !dem_mesh_touch_search(look->w, row, wall, margin, touches, &slack);
+    for (size_t i = before; !look->failed && i < touches->count; i++) {
+        dem_mesh_touch *t = &touches->items[i];
+        t->slot = (uint32_t)(look->count - begin);
+        dem_contact_item item = wall_item(look->w, row, t->sphere, wall);
+        for (uint32_t k = 0; k < t->slot_count; k++)
+            add_item(look, &item);
+    }
+    return slack;
+}
+
+// the springs of a body's old items, [k, end) of the old list; both are sorted by wall, then sphere, and a ball's slots
+// at one mesh follow each other
+static void take_springs(const dem_contacts *contacts, const dem_segment *s, size_t k, size_t end,
+                         dem_contact_item *items, size_t count)
+{
+    const dem_contact_columns *c = &contacts->columns;
+    for (size_t i = 0; i < count; i++) {
+        dem_contact_item *item = &items[i];
+        size_t at = 0;
+        for (; k < end; k++) {
+            at = segment_place(s, k);
+            if (c->sphere_b[at] > item->sphere_b ||
+                (c->sphere_b[at] == item->sphere_b && c->sphere_a[at] >= item->sphere_a))
+                break;
+        }
+        if (k == end || c->sphere_a[at] != item->sphere_a || c->sphere_b[at] != item->sphere_b)
+            continue;
+        dem_contact_item old = dem_contact_get(c, at);
+        memcpy(item->spring, old.spring, sizeof item->spring);
+        item->loss = old.loss;
+        k++;
+    }
+}
+
+static bool expired(const dem_world *w, size_t row)
+{
+    return !(w->bodies.path[row] + w->wall_path <= w->bodies.wall_limit[row]);
+}
+
+// all items of one body in one form, anew; lowers `slack`
+static void look_at_body(wall_look *look, size_t row, new_list *list, double *slack)
+{
+    dem_world *w = look->w;
+    double strides = WALL_STRIDES * (body_stride(&w->bodies, row, w->next_step) + w->sweep_speed * w->next_step);
+    double margin = dem_refresh_margin(w, row, row, strides);
+    for (uint32_t i = 0; i < w->walls.count; i++) {
+        if (w->walls.items[i].form != list->form)
+            continue;
+        double room = list->form == DEM_FORM_MESH ? look_at_mesh(look, row, i, margin, list->begin, &list->touches)
+                                                  : look_at_smooth(look, row, i, margin);
+        *slack = smaller(*slack, room);
+    }
+}
+
+// the touches of a body that was not looked at move with its items
+static void keep_touches(wall_look *look, size_t row, size_t old_begin, size_t begin, new_list *list)
+{
+    const dem_mesh_touches *old = &look->w->mesh_touches[list->segment];
+    for (size_t i = 0; i < old->count; i++)
+        if (old->items[i].a == row) {
+            uint32_t slot = (uint32_t)(old->items[i].slot - old_begin + begin);
+            look->failed |= !dem_mesh_touch_copy(old, &old->items[i], slot, &list->touches);
+        }
+}
+
+static bool same_list(const dem_contacts *contacts, const dem_segment *s, const dem_contact_item *items, size_t count,
+                      size_t old_count)
+{
+    if (count != old_count)
+        return false;
+    for (size_t k = 0; k < count; k++) {
+        size_t at = segment_place(s, k);
+        if (contacts->columns.a[at] != items[k].a || contacts->columns.sphere_a[at] != items[k].sphere_a ||
+            contacts->columns.sphere_b[at] != items[k].sphere_b)
+            return false;
+    }
+    return true;
+}
+
+static void look_at_form(wall_look *look, size_t segment, dem_wall_form form, const bool *looked, double *slack)
+{
+    dem_world *w = look->w;
+    const dem_contacts *contacts = &w->wall_contacts[form];
+    const dem_segment *s = &contacts->segments[segment];
+    size_t rows = segment * DEM_SEGMENT, end = rows + DEM_SEGMENT, old = 0, size = s->end - s->begin;
+    end = end < w->bodies.count ? end : w->bodies.count;
+    new_list list = {.segment = segment, .form = form, .begin = look->count};
+    for (size_t row = rows; row < end && !look->failed; row++) {
+        size_t from = old, begin = look->count;
+        while (old < size && contacts->columns.a[segment_place(s, old)] == row)
+            old++;
+        if (looked[row - rows]) {
+            size_t touches = list.touches.count;
+            look_at_body(look, row, &list, &slack[row - rows]);
+            take_springs(contacts, s, from, old, look->items + begin, look->count - begin);
+            if (form == DEM_FORM_MESH && !look->failed)
+                look->failed |= !dem_mesh_touch_remember(&w->mesh_touches[segment], &list.touches, touches);
+        } else {
+            for (size_t k = from; k < old; k++) {
+                dem_contact_item item = dem_contact_get(&contacts->columns, segment_place(s, k));
+                add_item(look, &item);
+            }
+            if (form == DEM_FORM_MESH)
+                keep_touches(look, row, from, begin - list.begin, &list);
+        }
+    }
+    list.count = look->count - list.begin;
+    bool same = form != DEM_FORM_MESH && same_list(contacts, s, look->items + list.begin, list.count, old);
+    if (same)
+        look->count = list.begin;
+    else if (dem_grow(&look->lists, &look->list_capacity, look->list_count, sizeof list))
+        look->lists[look->list_count++] = list;
+    else
+        look->failed = true;
+}
+
+static void look_at_segment(wall_look *look, size_t segment, const bool *looked)
+{
+    dem_world *w = look->w;
+    double slack[DEM_SEGMENT];
+    for (int i = 0; i < DEM_SEGMENT; i++)
+        slack[i] = INFINITY;
+    for (int form = 0; form < DEM_WALL_FORMS; form++)
+        if (w->wall_contacts[form].segments)
+            look_at_form(look, segment, (dem_wall_form)form, looked, slack);
+    for (size_t i = 0; i < DEM_SEGMENT; i++)
+        if (looked[i]) {
+            size_t row = segment * DEM_SEGMENT + i;
+            w->bodies.wall_limit[row] = w->bodies.path[row] + w->wall_path + slack[i];
+        }
+}
+
+static bool put_lists(wall_look *look, dem_wall_form form, size_t *needed)
+{
+    dem_world *w = look->w;
+    dem_contacts *contacts = &w->wall_contacts[form];
+    for (size_t i = 0; i < look->list_count; i++)
+        if (look->lists[i].form == form) {
+            needed[look->lists[i].segment] = look->lists[i].count;
+            contacts->segments[look->lists[i].segment].dirty = true;
+        }
+    if (!dem_contacts_reserve(w, contacts, (int)form, needed))
+        return false;
+    dem_contact_item idle = dem_contact_idle(w, (int)form);
+    for (size_t i = 0; i < look->list_count; i++) {
+        new_list *list = &look->lists[i];
+        if (list->form != form)
+            continue;
+        dem_segment *s = &contacts->segments[list->segment];
+        size_t full = (list->count + DEM_BLOCK_LANES - 1) / DEM_BLOCK_LANES * DEM_BLOCK_LANES;
+        s->end = s->begin + full;
+        s->dirty = false;
+        for (size_t k = 0; k < full; k++)
+            dem_contact_put(&contacts->columns, segment_place(s, k),
+                            k < list->count ? &look->items[list->begin + k] : &idle);
+        if (form == DEM_FORM_MESH) {
+            dem_mesh_touches_release(&w->mesh_touches[list->segment]);
+            w->mesh_touches[list->segment] = list->touches;
+            list->touches = (dem_mesh_touches){0};
+        }
+    }
+    return true;
+}
+
+dem_status dem_wall_refresh(dem_world *w, dem_error *error)
+{
+    wall_look look = {.w = w};
+    for (size_t k = 0; k < w->asked_count && !look.failed;) {
+        size_t segment = w->asked[k] / DEM_SEGMENT;
+        bool looked[DEM_SEGMENT] = {false}, some = false;
+        for (; k < w->asked_count && w->asked[k] / DEM_SEGMENT == segment; k++)
+            some |= looked[w->asked[k] % DEM_SEGMENT] = expired(w, w->asked[k]);
+        if (some)
+            look_at_segment(&look, segment, looked);
+    }
+    size_t *needed = look.list_count ? dem_alloc_zero(w->segment_count, sizeof *needed) : NULL;
+    bool good = !look.failed && (needed || !look.list_count);
+    for (int form = 0; needed && good && form < DEM_WALL_FORMS; form++)
+        if (w->wall_contacts[form].segments)
+            good = put_lists(&look, (dem_wall_form)form, needed);
+    for (size_t i = 0; i < look.list_count; i++)
+        dem_mesh_touches_release(&look.lists[i].touches);
+    free(needed);
+    free(look.items);
+    free(look.lists);
+    return good ? DEM_OK : dem_fail_memory(error);
+}

@@ -1,0 +1,129 @@
+#include "sim/walls.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/memory.h"
+#include "base/status.h"
+#include "sim/mesh_wall.h"
+
+static const double FAR_AWAY = 1e155; // [m] farther than any dummy body
+
+static const dem_wall_form form_of[] = {
+    [DEM_WALL_PLANE] = DEM_FORM_PLANE, [DEM_WALL_CYLINDER] = DEM_FORM_CYLINDER, [DEM_WALL_MESH] = DEM_FORM_MESH};
+
+// a surface that moves along itself stays where it is: a plane within itself, a cylinder about its own axis
+static bool sweeps(const dem_wall *w)
+{
+    double speed = v3_norm(w->velocity), rate = v3_norm(w->spin), little = 1e-12;
+    if (w->form == DEM_FORM_MESH)
+        return speed > 0 || rate > 0;
+    dem_vec3 across = v3_cross(w->spin, w->normal);
+    if (w->form == DEM_FORM_PLANE) {
+        // in-plane rotation keeps a plane
+        return fabs(v3_dot(w->velocity, w->normal)) > little * speed || v3_norm(across) > little * rate;
+    }
+    dem_vec3 aside = v3_cross(w->velocity, w->normal), off = v3_cross(v3_sub(w->point, w->through), w->normal);
+    bool about_itself = v3_norm(across) <= little * rate && v3_norm(off) <= little * fabs(w->radius);
+    return v3_norm(aside) > little * speed || (rate > 0 && !about_itself);
+}
+
+static dem_status make_wall(const dem_ctx *ctx, const dem_wall_def *def, dem_wall *wall, dem_error *error)
+{
+    *wall = (dem_wall){.name = strdup(def->name ? def->name : ""),
+                       .form = form_of[def->kind],
+                       .material = def->material,
+                       .point = def->point,
+                       .normal = v3_unit(def->normal),
+                       .radius = def->outside ? -def->radius : def->radius,
+                       .velocity = def->velocity,
+                       .through = def->through,
+                       .spin = def->spin,
+                       .orientation = {1, 0, 0, 0}};
+    if (!wall->name)
+        return dem_fail_memory(error);
+    wall->moves = v3_norm2(def->velocity) > 0 || v3_norm2(def->spin) > 0;
+    wall->sweeps = wall->moves && sweeps(wall);
+    if (wall->form == DEM_FORM_MESH)
+        return dem_mesh_wall_create(ctx, &def->mesh, wall->name, &wall->mesh, error);
+    return DEM_OK;
+}
+
+dem_status dem_walls_create(const dem_ctx *ctx, const dem_scene *scene, dem_walls *walls, dem_error *error)
+{
+    size_t rows = (scene->wall_count + 2) * DEM_WALL_ROW;
+    *walls = (dem_walls){.items = dem_alloc_zero(scene->wall_count, sizeof *walls->items),
+                         .rows = aligned_alloc(64, rows * sizeof(double))};
+    if (!walls->items || !walls->rows)
+        return dem_fail_memory(error);
+    memset(walls->rows, 0, rows * sizeof(double));
+    walls->rows[rows - 2 * DEM_WALL_ROW + 3] = -FAR_AWAY;
+    walls->rows[rows - DEM_WALL_ROW + 3] = FAR_AWAY;
+    for (size_t i = 0; i < scene->wall_count; i++) {
+        walls->count = i + 1;
+        DEM_TRY(make_wall(ctx, &scene->walls[i], &walls->items[i], error));
+        walls->move |= walls->items[i].moves;
+        walls->sweep |= walls->items[i].sweeps;
+    }
+    dem_walls_place(walls, 0);
+    return DEM_OK;
+}
+
+void dem_walls_release(dem_walls *walls)
+{
+    for (size_t i = 0; i < walls->count; i++) {
+        free(walls->items[i].name);
+        dem_mesh_wall_destroy(walls->items[i].mesh);
+    }
+    free(walls->items);
+    free(walls->rows);
+}
+
+static void place(dem_wall *w, double t, double *row)
+{
+    double angle = v3_norm(w->spin) * t;
+    dem_vec3 axis = v3_unit(w->spin), through = v3_along(w->through, t, w->velocity);
+    // whole turns are taken off first: exact for long runs
+    angle = remainder(angle, 2 * DEM_PI);
+    dem_vec3 e = v3_scale(axis, sin(angle / 2));
+    w->orientation = (dem_quat){cos(angle / 2), e.x, e.y, e.z};
+    w->position = v3_sub(through, quat_rotate(w->orientation, w->through));
+    dem_vec3 normal = wall_turn(w, w->normal), point = wall_to_space(w, w->point);
+    dem_vec3 passing = v3_sub(w->velocity, v3_cross(w->spin, through));
+    double along = w->form == DEM_FORM_PLANE ? v3_dot(normal, point) : w->radius;
+    memcpy(row,
+           (double[DEM_WALL_ROW]){normal.x, normal.y, normal.z, along, point.x, point.y, point.z, 0, passing.x,
+                                  passing.y, passing.z, w->spin.x, w->spin.y, w->spin.z},
+           DEM_WALL_ROW * sizeof *row);
+}
+
+void dem_walls_place(dem_walls *walls, double t)
+{
+    for (size_t i = 0; i < walls->count; i++)
+        place(&walls->items[i], t, walls->rows + DEM_WALL_ROW * i);
+}
+
+double dem_walls_speed(const dem_walls *walls, dem_vec3 centre, double radius)
+{
+    double speed = 0;
+    for (size_t i = 0; i < walls->count; i++) {
+        const double *row = walls->rows + DEM_WALL_ROW * i;
+        if (!walls->items[i].sweeps)
+            continue;
+        dem_vec3 spin = walls->items[i].spin;
+        dem_vec3 v = v3_add(v3(row[8], row[9], row[10]), v3_cross(spin, centre));
+        speed = larger(speed, v3_norm(v) + v3_norm(spin) * radius);
+    }
+    return speed;
+}
+
+double dem_wall_distance(const dem_walls *walls, size_t wall, dem_vec3 x)
+{
+    const double *row = walls->rows + DEM_WALL_ROW * wall;
+    dem_vec3 n = v3(row[0], row[1], row[2]);
+    if (walls->items[wall].form == DEM_FORM_PLANE)
+        return v3_dot(n, x) - row[3];
+    dem_vec3 from = v3_sub(x, v3(row[4], row[5], row[6]));
+    double r = v3_norm(v3_along(from, -v3_dot(from, n), n));
+    return row[3] > 0 ? row[3] - r : r + row[3];
+}

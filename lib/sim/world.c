@@ -1,0 +1,446 @@
+#include <omp.h>
+#include <stdlib.h>
+#include <string.h>
+#include <time.h>
+
+#include "base/status.h"
+#include "sim/bodies.h"
+#include "sim/broad.h"
+#include "sim/contacts.h"
+#include "sim/lists.h"
+#include "sim/measure.h"
+#include "sim/place.h"
+#include "sim/timestep.h"
+
+static const char *const pass_names[DEM_PASSES] = {
+    [DEM_PASS_PAIRS] = "contacts", [DEM_PASS_WALLS] = "walls",     [DEM_PASS_MOTION] = "motion",
+    [DEM_PASS_SEARCH] = "search",  [DEM_PASS_REFRESH] = "refresh", [DEM_PASS_LISTS] = "lists",
+    [DEM_PASS_STEP] = "time step", [DEM_PASS_MEASURE] = "measure",
+};
+
+enum { THREADS_FROM = 512, DOMAINS = 8, DOMAIN_LEAST = 256, DOMAIN_MOST = 4096 };
+
+double dem_clock(void)
+{
+    struct timespec t;
+    clock_gettime(CLOCK_MONOTONIC, &t);
+    return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
+}
+
+// ---- making a world
+
+static dem_status copy_shapes(dem_world *w, const dem_scene *scene, dem_error *error)
+{
+    w->shape_count = scene->shape_count;
+    w->clumps = dem_alloc_zero(w->shape_count, sizeof *w->clumps);
+    w->shape_names = dem_alloc_zero(w->shape_count, sizeof *w->shape_names);
+    if (!w->clumps || !w->shape_names)
+        return dem_fail_memory(error);
+    for (size_t i = 0; i < w->shape_count; i++) {
+        const dem_shape_def *shape = &scene->shapes[i];
+        w->shape_names[i] = strdup(shape->name ? shape->name : "");
+        if (!w->shape_names[i])
+            return dem_fail_memory(error);
+        if (shape->clump) {
+            size_t bytes = dem_clump_bytes(shape->clump);
+            w->clumps[i] = malloc(bytes);
+            if (!w->clumps[i])
+                return dem_fail_memory(error);
+            memcpy(w->clumps[i], shape->clump, bytes);
+        } else
+            DEM_TRY(dem_sphere_clump(scene, i, &w->clumps[i], error));
+    }
+    return DEM_OK;
+}
+
+// what the scene needs of the kernels
+static void set_features(dem_world *w, const dem_body_def *defs, size_t count)
+{
+    dem_features *f = &w->features;
+    *f = w->laws.needs;
+    f->ledger = w->ledger && (w->laws.damped || f->friction || w->walls.move);
+    f->periodic = w->periodic;
+    f->moving = w->walls.move;
+    f->weighted = w->multiple != DEM_MULTIPLE_SUM;
+    for (size_t i = 0; i < count; i++) {
+        f->offset |= !w->templates.items[defs[i].shape].centred;
+        f->scaled |= defs[i].scale != 1;
+    }
+}
+
+static bool used(const dem_world *w, dem_wall_form form)
+{
+    for (size_t i = 0; i < w->walls.count; i++)
+        if (w->walls.items[i].form == form)
+            return true;
+    return false;
+}
+
+static dem_status make_lists(dem_world *w, dem_error *error)
+{
+    size_t n = w->bodies.count;
+    w->segment_count = (n + DEM_SEGMENT - 1) / DEM_SEGMENT;
+    // a domain depends on the number of bodies only, so that sums do not depend on the threads
+    w->domain_bodies = (n / DOMAINS / DEM_SEGMENT + 1) * DEM_SEGMENT;
+    w->domain_bodies = w->domain_bodies < DOMAIN_LEAST ? DOMAIN_LEAST : w->domain_bodies;
+    w->domain_bodies = w->domain_bodies > DOMAIN_MOST ? DOMAIN_MOST : w->domain_bodies;
+    DEM_TRY(dem_contacts_create(w, &w->contacts, -1, error));
+    for (int form = 0; form < DEM_WALL_FORMS; form++)
+        if (used(w, (dem_wall_form)form))
+            DEM_TRY(dem_contacts_create(w, &w->wall_contacts[form], form, error));
+    if (used(w, DEM_FORM_MESH))
+        w->mesh_touches = dem_alloc_zero(w->segment_count, sizeof *w->mesh_touches);
+    w->tallies = dem_alloc_zero(w->segment_count * (1 + DEM_WALL_FORMS), sizeof *w->tallies);
+    w->motion_tallies = dem_alloc_zero(w->segment_count, sizeof *w->motion_tallies);
+    w->asked = dem_alloc(w->bodies.padded, sizeof *w->asked);
+    w->part_asked = dem_alloc_zero((size_t)w->threads + 1, sizeof *w->part_asked);
+    w->parts = dem_alloc_zero((size_t)w->threads + 1, sizeof *w->parts);
+    w->candidates = dem_alloc_zero((size_t)w->threads, sizeof *w->candidates);
+    if ((used(w, DEM_FORM_MESH) && !w->mesh_touches) || !w->tallies || !w->motion_tallies || !w->asked ||
+        !w->part_asked || !w->parts || !w->candidates)
+        return dem_fail_memory(error);
+    size_t longest = 0;
+    for (size_t i = 0; i < w->templates.count; i++)
+        if (w->templates.items[i].float_padded > longest)
+            longest = w->templates.items[i].float_padded;
+    for (int t = 0; t < w->threads; t++) {
+        w->candidates[t].work = aligned_alloc(64, (8 * longest + 6 * 64) * sizeof(float));
+        if (!w->candidates[t].work)
+            return dem_fail_memory(error);
+    }
+    return dem_views_create(w, error);
+}
+
+static dem_status make_state(dem_world *w, const dem_scene *scene, dem_error *error)
+{
+    dem_body_def *defs = NULL;
+    size_t count = 0;
+    DEM_TRY(copy_shapes(w, scene, error));
+    DEM_TRY(dem_templates_create(scene, &w->templates, error));
+    DEM_TRY(dem_laws_create(scene, &w->laws, error));
+    DEM_TRY(dem_walls_create(w->ctx, scene, &w->walls, error));
+    DEM_TRY(dem_place_bodies(w, scene, &defs, &count, error));
+    set_features(w, defs, count);
+    dem_features still = w->features;
+    still.moving = false;
+    w->instance = dem_kernels_instance(w->kernels, still);
+    w->wall_instance = dem_kernels_instance(w->kernels, w->features);
+    dem_status status = dem_bodies_create(w, defs, count, error);
+    free(defs);
+    DEM_TRY(status);
+    if (w->bodies.count < THREADS_FROM)
+        w->threads = 1;
+    w->skin = dem_broad_skin(w);
+    DEM_TRY(dem_search_create(w, error));
+    if (w->periodic)
+        DEM_TRY(dem_broad_images(w, error));
+    DEM_TRY(make_lists(w, error));
+    for (size_t i = 0; i < count; i++)
+        w->asked[i] = (uint32_t)i;
+    w->asked_count = count;
+    // good enough for the margins of the first lists
+    w->next_step = w->last_step = w->time_def.step > 0 ? w->time_def.step : dem_step_guess(w);
+    DEM_TRY(dem_lists_update(w, error));
+    return dem_step_choose(w, error);
+}
+
+// momenta of the positions' time to those half a step before
+static dem_status start(dem_world *w, dem_error *error)
+{
+    w->last_step = 0;
+    DEM_TRY(dem_world_measure(w, error));
+    w->last_step = w->next_step;
+    for (size_t i = 0; i < w->bodies.count; i++) {
+        size_t row = w->bodies.place[i];
+        double *p = w->bodies.momentum + DEM_ROW * row, *motion = body_pose(&w->bodies, row) + 8;
+        double m = w->bodies.inertia[DEM_ROW * row + 5], half = w->next_step / 2;
+        dem_vec3 f = v3_along(w->views.force[i], m, w->gravity), t = w->views.moment[i];
+        double impulse[6] = {f.x, f.y, f.z, t.x, t.y, t.z};
+        for (int k = 0; k < 6; k++)
+            p[k] -= half * impulse[k];
+        for (int k = 0; k < 3; k++)
+            motion[k] = p[k] * w->bodies.inertia[DEM_ROW * row];
+        dem_vec3 spin = dem_body_spin(&w->bodies, row, v3(p[3], p[4], p[5]));
+        motion[3] = spin.x;
+        motion[4] = spin.y;
+        motion[5] = spin.z;
+    }
+    return dem_world_measure(w, error);
+}
+
+dem_status dem_world_create(const dem_ctx *ctx, const dem_scene *scene, dem_world **world, dem_error *error)
+{
+    dem_world *w = *world = aligned_alloc(64, (sizeof *w + 63) / 64 * 64);
+    if (!w)
+        return dem_fail_memory(error);
+    *w = (dem_world){.gravity = scene->gravity,
+                     .domain = scene->domain,
+                     .damping = scene->damping,
+                     .multiple = scene->multiple,
+                     .time_def = scene->time,
+                     .ledger = scene->output.energy,
+                     .threads = dem_threads(ctx),
+                     .kernels = dem_kernels_choose(NULL)};
+    w->own_ctx = ctx ? *ctx : (dem_ctx){0};
+    w->ctx = &w->own_ctx;
+    w->periodic = scene->domain.periodic[0] || scene->domain.periodic[1] || scene->domain.periodic[2];
+    for (int i = 0; i < DEM_PASSES; i++)
+        w->clocks[i].name = pass_names[i];
+    dem_status status = make_state(w, scene, error);
+    if (status == DEM_OK)
+        status = start(w, error);
+    dem_world_reset_clocks(w);
+    if (status != DEM_OK) {
+        dem_world_destroy(w);
+        *world = NULL;
+    }
+    return status;
+}
+
+void dem_world_destroy(dem_world *w)
+{
+    if (!w)
+        return;
+    for (size_t i = 0; i < w->shape_count; i++) {
+        if (w->clumps)
+            dem_clump_destroy(w->clumps[i]);
+        if (w->shape_names)
+            free(w->shape_names[i]);
+    }
+    dem_templates_release(&w->templates);
+    dem_laws_release(&w->laws);
+    dem_walls_release(&w->walls);
+    dem_bodies_release(&w->bodies);
+    dem_pairs_release(&w->pairs);
+    dem_search_destroy(w->search);
+    dem_contacts_release(&w->contacts);
+    for (int form = 0; form < DEM_WALL_FORMS; form++)
+        dem_contacts_release(&w->wall_contacts[form]);
+    for (size_t i = 0; w->mesh_touches && i < w->segment_count; i++)
+        dem_mesh_touches_release(&w->mesh_touches[i]);
+    for (int t = 0; w->candidates && t < w->threads; t++) {
+        free(w->candidates[t].pairs);
+        free(w->candidates[t].work);
+    }
+    dem_views_release(&w->views);
+    void *all[] = {w->clumps, w->shape_names, w->shifts, w->mesh_touches, w->tallies,    w->motion_tallies,
+                   w->asked,  w->part_asked,  w->parts,  w->fresh,        w->candidates, w->pushes};
+    for (size_t i = 0; i < sizeof all / sizeof *all; i++)
+        free(all[i]);
+    free(w);
+}
+
+// ---- stepping
+
+// whole domains for each thread, with about as many contacts
+static void split_parts(dem_world *w)
+{
+    size_t per_domain = w->domain_bodies / DEM_SEGMENT, total = 0, done = 0;
+    for (size_t i = 0; i < w->segment_count; i++)
+        total += w->contacts.segments[i].end - w->contacts.segments[i].begin + DEM_SEGMENT;
+    size_t part = 1;
+    for (size_t i = 0; i < w->segment_count && part < (size_t)w->threads; i++) {
+        done += w->contacts.segments[i].end - w->contacts.segments[i].begin + DEM_SEGMENT;
+        if (done * (size_t)w->threads >= total * part && (i + 1) % per_domain == 0)
+            w->parts[part++] = i + 1;
+    }
+    for (; part <= (size_t)w->threads; part++)
+        w->parts[part] = w->segment_count;
+}
+
+static void contact_pass(dem_world *w, size_t begin, size_t end, double kick)
+{
+    dem_rows rows = world_rows(w);
+    for (size_t i = begin; i < end; i++) {
+        const dem_segment *s = &w->contacts.segments[i];
+        if (s->begin < s->end)
+            w->instance->pairs(
+                w->features, &rows,
+                &(dem_contact_job){w->contacts.columns, s->begin, s->end, w->last_step, kick, &w->tallies[i], NULL});
+    }
+}
+
+static void wall_pass(dem_world *w, size_t begin, size_t end, double kick)
+{
+    dem_rows rows = world_rows(w);
+    for (size_t form = 0; form < DEM_WALL_FORMS; form++) {
+        const dem_contacts *contacts = &w->wall_contacts[form];
+        for (size_t i = begin; contacts->segments && i < end; i++) {
+            const dem_segment *s = &contacts->segments[i];
+            if (s->begin < s->end)
+                w->wall_instance->walls[form](w->features, &rows,
+                                              &(dem_contact_job){contacts->columns, s->begin, s->end, w->last_step,
+                                                                 kick, &w->tallies[(1 + form) * w->segment_count + i],
+                                                                 NULL});
+        }
+    }
+}
+
+static void motion_pass(dem_world *w, size_t begin, size_t end, double kick, uint32_t *asked, size_t *asked_count)
+{
+    dem_rows rows = world_rows(w);
+    *asked_count = 0;
+    bool damped = w->damping.local > 0 || w->damping.viscous > 0, tally = damped && w->ledger;
+    // the last part moves the rows that fill up, too
+    size_t last = end == w->segment_count ? w->bodies.padded : end * DEM_SEGMENT;
+    for (size_t from = begin * DEM_SEGMENT; from < last;) {
+        size_t to = tally && from + DEM_SEGMENT < last ? from + DEM_SEGMENT : last;
+        size_t segment = from / DEM_SEGMENT;
+        dem_motion_job job = {.begin = from,
+                              .end = to,
+                              .step = w->next_step,
+                              .kick = kick,
+                              .gravity = {w->gravity.x, w->gravity.y, w->gravity.z},
+                              .path = w->bodies.path,
+                              .limit = w->bodies.limit,
+                              .wall_limit = w->walls.sweep ? w->bodies.wall_limit : NULL,
+                              .wall_path = w->wall_path,
+                              .before = w->bodies.before,
+                              .local = w->damping.local,
+                              .viscous = w->damping.viscous,
+                              .vector = w->damping.local_frame == DEM_LOCAL_VECTOR,
+                              .exclude_gravity = w->damping.exclude_gravity,
+                              .tally = tally && segment < w->segment_count ? &w->motion_tallies[segment] : NULL,
+                              .asked = asked + *asked_count};
+        w->kernels->move(&rows, &job);
+        *asked_count += job.asked_count;
+        from = to;
+    }
+}
+
+static void push_bodies(dem_world *w, double kick, const double sign)
+{
+    for (size_t i = 0; i < w->push_count; i++) {
+        const dem_push *push = &w->pushes[i];
+        double *p = w->bodies.momentum + DEM_ROW * push->row;
+        const double *motion = body_pose(&w->bodies, push->row) + 8;
+        double impulse[6] = {push->force.x,  push->force.y,  push->force.z,
+                             push->moment.x, push->moment.y, push->moment.z};
+        for (int k = 0; k < 6; k++) {
+            if (sign > 0)
+                p[k] += kick * impulse[k];
+            // against the mean of the velocities before and after
+            w->push_work += kick * impulse[k] * motion[k] / 2;
+        }
+    }
+}
+
+// seconds of the first thread by pass; the others do the same work beside it
+static void step_part(dem_world *w, size_t part, double kick)
+{
+    size_t begin = w->parts[part], end = w->parts[part + 1];
+    double t0 = dem_clock();
+    if (w->mesh_touches)
+        dem_mesh_touch_measure(w, begin, end);
+    if (w->features.weighted)
+        dem_weigh_contacts(w, begin, end);
+    wall_pass(w, begin, end, kick);
+    double t1 = dem_clock();
+    contact_pass(w, begin, end, kick);
+    double t2 = dem_clock();
+#pragma omp barrier
+    dem_contacts_add_slots(w, begin * DEM_SEGMENT, end * DEM_SEGMENT);
+    if (w->push_count) {
+#pragma omp barrier
+#pragma omp single
+        push_bodies(w, kick, 1);
+    }
+    double t3 = dem_clock();
+    motion_pass(w, begin, end, kick, w->asked + begin * DEM_SEGMENT, &w->part_asked[part]);
+    double t4 = dem_clock();
+    if (part == 0) {
+        w->clocks[DEM_PASS_WALLS].seconds += t1 - t0;
+        w->clocks[DEM_PASS_PAIRS].seconds += t2 - t1 + (t3 - t2);
+        w->clocks[DEM_PASS_MOTION].seconds += t4 - t3;
+    }
+}
+
+static void join_asked(dem_world *w)
+{
+    w->asked_count = 0;
+    for (size_t part = 0; part < (size_t)w->threads; part++) {
+        const uint32_t *from = w->asked + w->parts[part] * DEM_SEGMENT;
+        for (size_t i = 0; i < w->part_asked[part]; i++)
+            w->asked[w->asked_count++] = from[i];
+    }
+}
+
+static void set_time(dem_world *w)
+{
+    w->steps++;
+    w->last_step = w->next_step;
+    if (w->walls.move)
+        dem_walls_place(&w->walls, dem_world_time(w));
+}
+
+static dem_status step_once(dem_world *w, dem_error *error)
+{
+    double kick = (w->last_step + w->next_step) / 2;
+    if (w->bodies.before)
+        memcpy(w->bodies.before, w->bodies.momentum, w->bodies.padded * DEM_ROW * sizeof *w->bodies.before);
+    w->wall_path += w->next_step * w->sweep_speed;
+    if (w->steps % 64 == 0)
+        split_parts(w);
+    if (w->threads == 1)
+        step_part(w, 0, kick);
+    else {
+#pragma omp parallel num_threads(w->threads)
+        step_part(w, (size_t)omp_get_thread_num(), kick);
+    }
+    if (w->push_count) {
+        push_bodies(w, kick, 0);
+        w->push_count = 0;
+    }
+    join_asked(w);
+    set_time(w);
+    if (w->asked_count)
+        DEM_TRY(dem_lists_update(w, error));
+    return dem_step_review(w, error);
+}
+
+dem_status dem_world_step(dem_world *w, uint64_t steps, dem_error *error)
+{
+    if (w->steps == 0 || w->parts[w->threads] == 0)
+        split_parts(w);
+    for (uint64_t i = 0; i < steps; i++)
+        DEM_TRY(step_once(w, error));
+    return DEM_OK;
+}
+
+void dem_world_push(dem_world *w, size_t body, dem_vec3 force, dem_vec3 moment)
+{
+    if (dem_grow(&w->pushes, &w->push_capacity, w->push_count, sizeof *w->pushes))
+        w->pushes[w->push_count++] = (dem_push){w->bodies.place[body], force, moment};
+}
+
+double dem_world_time(const dem_world *w)
+{
+    return w->epoch_time + (double)(w->steps - w->epoch_steps) * w->next_step;
+}
+
+uint64_t dem_world_steps(const dem_world *w)
+{
+    return w->steps;
+}
+
+double dem_world_step_size(const dem_world *w)
+{
+    return w->next_step;
+}
+
+const dem_clump *dem_world_clump(const dem_world *w, uint32_t shape)
+{
+    return w->clumps[shape];
+}
+
+const dem_pass_time *dem_world_passes(const dem_world *w, size_t *count)
+{
+    *count = DEM_PASSES;
+    return w->clocks;
+}
+
+void dem_world_reset_clocks(dem_world *w)
+{
+    for (int i = 0; i < DEM_PASSES; i++)
+        w->clocks[i].seconds = 0;
+}
