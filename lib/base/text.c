@@ -40,39 +40,68 @@ static const char *parse_slowly(const char *text, const char *end, double *value
     return used ? text + used : NULL;
 }
 
-// m 10^power, correctly rounded: product or quotient of whole numbers in 128 bits, what is left of a division as a
-// last bit that is set. |power| <= TWO_WORDS_POWER, so that 5^|power| < 2^63; m > 0
+static const uint64_t powers_of_five[TWO_WORDS_POWER + 1] = {1,
+                                                             5,
+                                                             25,
+                                                             125,
+                                                             625,
+                                                             3125,
+                                                             15625,
+                                                             78125,
+                                                             390625,
+                                                             1953125,
+                                                             9765625,
+                                                             48828125,
+                                                             244140625,
+                                                             1220703125,
+                                                             6103515625,
+                                                             30517578125,
+                                                             152587890625,
+                                                             762939453125,
+                                                             3814697265625,
+                                                             19073486328125,
+                                                             95367431640625,
+                                                             476837158203125,
+                                                             2384185791015625,
+                                                             11920928955078125,
+                                                             59604644775390625,
+                                                             298023223876953125,
+                                                             1490116119384765625,
+                                                             7450580596923828125};
+
+// m 10^power, correctly rounded: product or quotient of whole numbers in 128 bits, what is left over as a last bit that
+// is set. |power| <= TWO_WORDS_POWER, so that 5^|power| < 2^63; m > 0
 static double scale_exactly(uint64_t m, int power)
 {
-    unsigned __int128 wide = m;
-    uint64_t fives = 1;
-    for (int i = abs(power); i > 0; i--)
-        fives *= 5;
+    uint64_t fives = powers_of_five[abs(power)], bits;
     int exponent = power; // of two
-    bool rest = false;
+    bool rest;
     if (power < 0) {
-        int room = 64 + __builtin_clzll(m);
-        unsigned __int128 whole = (wide << room) / fives;
-        rest = whole * fives != wide << room;
-        wide = whole;
-        exponent -= room;
-    } else
-        wide *= fives;
-    uint64_t high = (uint64_t)(wide >> 64);
-    if (high) { // to 64 bits
-        int shift = 64 - __builtin_clzll(high);
-        rest |= wide << (128 - shift) != 0;
-        wide >>= shift;
+        // both with their first bit set: the quotient has 63 or 64 bits
+        int shift = __builtin_clzll(m), other = __builtin_clzll(fives);
+        unsigned __int128 wide = (unsigned __int128)(m << shift) << 63;
+        fives <<= other;
+        bits = (uint64_t)(wide / fives);
+        rest = (unsigned __int128)bits * fives != wide;
+        exponent += other - shift - 63;
+    } else {
+        unsigned __int128 wide = (unsigned __int128)m * fives;
+        uint64_t high = (uint64_t)(wide >> 64);
+        int shift = high ? 64 - __builtin_clzll(high) : 0; // to 64 bits
+        bits = (uint64_t)(wide >> shift);
+        rest = (unsigned __int128)bits << shift != wide;
         exponent += shift;
     }
-    uint64_t bits = (uint64_t)wide;
     int spare = 9 - __builtin_clzll(bits); // to 55 bits: two more than a double has
     if (spare > 0) {
         rest |= bits << (64 - spare) != 0;
         bits >>= spare;
         exponent += spare;
     }
-    return ldexp((double)(bits | rest), exponent);
+    uint64_t two = (uint64_t)(1023 + exponent) << 52;
+    double scale;
+    memcpy(&scale, &two, sizeof scale);
+    return (double)(bits | rest) * scale;
 }
 
 // Digits up to 15 and a power of ten up to 22 are exact in a double, so one multiplication or division rounds
