@@ -85,9 +85,6 @@ int cli_error(const cli_tool *tool, const dem_error *error);
 /// Writes a buffer to standard output and releases it; returns the exit status, having said why it failed.
 int cli_print(const cli_tool *tool, dem_buffer *text);
 
-/// The name nearest to what was typed, or NULL if none is near; `next` yields names until NULL.
-const char *cli_nearest(const char *typed, const char *(*next)(const void *user, size_t index), const void *user);
-
 /// The help as text (cli_parse prints it).
 void cli_help(const cli_tool *tool, dem_buffer *text);
 
