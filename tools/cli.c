@@ -121,14 +121,19 @@ static bool take_number(parser *p, const cli_option *option, const char *text)
 
 static bool take_quantity(parser *p, const cli_option *option, const char *text)
 {
-    bool length = option->kind == CLI_LENGTH;
+    static const struct {
+        dem_dimension dimension;
+        const char *name, *unit;
+    } kinds[] = {[CLI_LENGTH] = {DEM_DIMENSION_LENGTH, "length", " m"},
+                 [CLI_DENSITY] = {DEM_DIMENSION_DENSITY, "density", " kg/m3"},
+                 [CLI_TIME] = {DEM_DIMENSION_TIME, "time", " s"}};
     char name[NAME_BYTES];
     dem_error error;
     double value;
-    if (dem_quantity(text, length ? DEM_DIMENSION_LENGTH : DEM_DIMENSION_DENSITY, &value, &error) != DEM_OK)
+    if (dem_quantity(text, kinds[option->kind].dimension, &value, &error) != DEM_OK)
         return fail(p, "%s: %s", shown(option, name), error.text);
     if (!isfinite(value) || !in_range(option, value))
-        return refuse_value(p, option, length ? "length" : "density", length ? " m" : " kg/m3", text);
+        return refuse_value(p, option, kinds[option->kind].name, kinds[option->kind].unit, text);
     *(double *)option->value = value;
     return true;
 }
@@ -200,6 +205,7 @@ static bool take(parser *p, const cli_option *option, const char *text)
         return take_number(p, option, text);
     case CLI_LENGTH:
     case CLI_DENSITY:
+    case CLI_TIME:
         return take_quantity(p, option, text);
     case CLI_CHOICE:
         return take_choice(p, option, text);

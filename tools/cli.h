@@ -18,6 +18,7 @@ typedef enum cli_kind {
     CLI_PERCENT,  ///< double, as a fraction: "3" and "3 %" give 0.03; the range is in percent
     CLI_LENGTH,   ///< double [m], "2 mm"
     CLI_DENSITY,  ///< double [kg/m^3], "2.65 g/cm3"
+    CLI_TIME,     ///< double [s], "0.5 s"
     CLI_CHOICE,   ///< int, index into the names of `argument`
     CLI_TEXTS,    ///< cli_texts, one item each time the option is given
 } cli_kind;

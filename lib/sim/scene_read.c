@@ -260,6 +260,5 @@ dem_status dem_scene_finish(dem_scene_reader *r, const dem_scene_value *root)
     dem_scene *scene = r->scene;
     DEM_TRY(check_laws(r, root));
     scene->time.safety = dem_scene_safety(scene);
-    scene->output.directory = dem_scene_path(r, scene->output.directory);
-    return scene->output.directory ? DEM_OK : dem_fail_memory(r->error);
+    return DEM_OK;  // the output's directory is left alone: results go to where one works, not to where scenes are kept
 }
