@@ -42,6 +42,8 @@ static void the_hash_of_abc_is_the_standards(void **state)
     dem_error error;
     dem_sha256("abc", 3, text);
     assert_string_equal(text, "ba7816bf8f01cfea414140de5dae2223b00361a396177a9cb410ff61f20015ad");
+    dem_sha256_pieces((dem_piece[]){{"a", 1}, {NULL, 0}, {"bc", 2}}, 3, same);
+    assert_string_equal(same, text);
     check_ok(dem_file_write(in_folder("abc"), "abc", 3, &error), error);
     check_ok(dem_sha256_file(in_folder("abc"), same, &error), error);
     assert_string_equal(same, text);
@@ -57,6 +59,29 @@ static void a_file_comes_back_as_it_was_written(void **state)
     check(bytes.size == 3);
     assert_memory_equal(bytes.data, "a\0b", 4);
     dem_buffer_release(&bytes);
+    const dem_piece pieces[] = {{"abc", 2}, {NULL, 0}, {"xyz", 3}};
+    check_ok(dem_file_write_pieces(in_folder("a"), pieces, 3, &error), error);
+    check_ok(dem_file_read(in_folder("a"), &bytes, &error), error);
+    assert_string_equal(bytes.data, "abxyz");
+    dem_buffer_release(&bytes);
+}
+
+static void folders_are_made_with_those_they_lie_in(void **state)
+{
+    (void)state;
+    dem_error error;
+    char *path = dem_path_join(folder, "new/%d", 7), *file = dem_path_join(path, "%s", "x");
+    check(path && file);
+    for (int twice = 0; twice < 2; twice++)
+        check_ok(dem_folder_create(path, &error), error);
+    check_ok(dem_file_write(file, "x", 1, &error), error);
+    check(dem_folder_create(file, &error) == DEM_CANNOT_WRITE);
+    check(strstr(error.text, "is a file") && strcmp(error.file, file) == 0);
+    char *below = dem_path_join(file, "below");
+    check(below && dem_folder_create(below, &error) == DEM_CANNOT_WRITE);
+    free(below);
+    free(path);
+    free(file);
 }
 
 static void a_failed_write_leaves_the_old_file_and_nothing_beside_it(void **state)
@@ -202,6 +227,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(the_hash_of_abc_is_the_standards),
         cmocka_unit_test(a_file_comes_back_as_it_was_written),
+        cmocka_unit_test(folders_are_made_with_those_they_lie_in),
         cmocka_unit_test(a_failed_write_leaves_the_old_file_and_nothing_beside_it),
         cmocka_unit_test(what_cannot_be_read_is_named),
         cmocka_unit_test(quantities_with_units_become_si),

@@ -150,6 +150,7 @@ SPOIL(volume, d->volume = -1)
 SPOIL(zero_inertia, d->inertia[0] = 0)
 SPOIL(order, d->inertia[0] = 0.25)
 SPOIL(inequality, d->inertia[2] = 0.31)
+SPOIL(source, d->mass_from = (dem_mass_source)(DEM_MASS_GIVEN + 1))
 SPOIL(union_volume, d->union_volume = -2)
 SPOIL(position, d->position.z = INFINITY)
 SPOIL(orientation, d->orientation.w = 0.7)
@@ -173,6 +174,7 @@ static void what_is_no_clump_is_refused_by_the_name_of_its_key(void **state)
                              {"mass", spoil_mass},
                              {"volume", spoil_volume},
                              {"inertia", spoil_zero_inertia},
+                             {"mass_from", spoil_source},
                              {"I1 <= I2 <= I3", spoil_order},
                              {"I1 + I2", spoil_inequality},
                              {"union.volume", spoil_union_volume},

@@ -48,6 +48,25 @@ static void a_clump_is_read_back_without_loss(void **state)
     }
 }
 
+static void every_source_of_the_mass_has_a_name(void **state)
+{
+    (void)state;
+    for (int source = DEM_MASS_FROM_MESH; source <= DEM_MASS_GIVEN; source++) {
+        dem_clump_def def = sample_clump();
+        def.mass_from = (dem_mass_source)source;
+        dem_clump *clump = made_clump(&def), *back;
+        dem_buffer text = {0};
+        dem_error error;
+        check_ok(dem_clump_encode(clump, &text, &error), error);
+        check_ok(dem_clump_decode(text.data, text.size, "x", &back, &error), error);
+        check(dem_clump_view(back).mass_from == (dem_mass_source)source);
+        check_same_clump(clump, back);
+        dem_clump_destroy(clump);
+        dem_clump_destroy(back);
+        dem_buffer_release(&text);
+    }
+}
+
 static void the_file_is_the_same_in_a_german_locale(void **state)
 {
     (void)state;
@@ -266,6 +285,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(a_clump_is_read_back_without_loss),
+        cmocka_unit_test(every_source_of_the_mass_has_a_name),
         cmocka_unit_test(the_file_is_the_same_in_a_german_locale),
         cmocka_unit_test(spheres_stand_one_on_a_line),
         cmocka_unit_test(a_file_written_by_hand_needs_only_spheres_and_mass),

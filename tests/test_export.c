@@ -1,4 +1,5 @@
 #include "clumps.h"
+#include "vtp.h"
 
 #include <unistd.h>
 
@@ -108,27 +109,11 @@ static void the_mesh_frame_is_that_of_the_file(void **state)
         // the quaternion (.6, 0, .8, 0) turns about y by an angle of cosine .36 - .64 and sine .96
         dem_vec3 c = def.balls[i].centre;
         dem_vec3 want = v3(1e6 + (-0.28 * c.x + 0.96 * c.z), -2 + c.y, 3 + (-0.96 * c.x - 0.28 * c.z));
-        check_vec(balls[i].centre, want, 1e-9);  // ulp of 1e6
+        check_vec(balls[i].centre, want, 1e-9); // ulp of 1e6
         check_near(balls[i].radius, def.balls[i].radius, 0);
     }
     check(strstr(out.data, "\n# unit of x y z r: m\n"));
     dem_buffer_release(&out);
-}
-
-// the raw array of a given name; its size is checked
-static const void *vtp_array(const dem_buffer *file, const char *name, size_t bytes)
-{
-    char key[64];
-    snprintf(key, sizeof key, "Name=\"%s\"", name);
-    const char *tag = strstr(file->data, key), *raw = strstr(file->data, "encoding=\"raw\">\n_");
-    check(tag && raw);
-    long offset;
-    check(dem_parse_long(strstr(tag, "offset=\"") + 8, file->data + file->size, &offset) != NULL);
-    const char *at = raw + strlen("encoding=\"raw\">\n_") + offset;
-    uint64_t size;
-    memcpy(&size, at, sizeof size);
-    check(size == bytes);
-    return at + sizeof size;
 }
 
 static void vtp_holds_a_point_with_its_radius_per_sphere(void **state)
@@ -140,20 +125,20 @@ static void vtp_holds_a_point_with_its_radius_per_sphere(void **state)
     dem_vec3 points[3];
     double radius[3], diameter[3], mass;
     int64_t connectivity[3], offsets[3];
-    memcpy(points, vtp_array(&out, "Points", sizeof points), sizeof points);
-    memcpy(radius, vtp_array(&out, "radius", sizeof radius), sizeof radius);
-    memcpy(diameter, vtp_array(&out, "diameter", sizeof diameter), sizeof diameter);
-    memcpy(connectivity, vtp_array(&out, "connectivity", sizeof connectivity), sizeof connectivity);
-    memcpy(offsets, vtp_array(&out, "offsets", sizeof offsets), sizeof offsets);
-    memcpy(&mass, vtp_array(&out, "mass", sizeof mass), sizeof mass);
+    memcpy(points, vtp_array(&out, "Points", "Points", "Float64", 3, sizeof points), sizeof points);
+    memcpy(radius, vtp_array(&out, "PointData", "radius", "Float64", 1, sizeof radius), sizeof radius);
+    memcpy(diameter, vtp_array(&out, "PointData", "diameter", "Float64", 1, sizeof diameter), sizeof diameter);
+    memcpy(connectivity, vtp_array(&out, "Verts", "connectivity", "Int64", 1, sizeof connectivity),
+           sizeof connectivity);
+    memcpy(offsets, vtp_array(&out, "Verts", "offsets", "Int64", 1, sizeof offsets), sizeof offsets);
+    memcpy(&mass, vtp_array(&out, "FieldData", "mass", "Float64", 1, sizeof mass), sizeof mass);
     for (int i = 0; i < 3; i++) {
         check_vec(points[i], def.balls[i].centre, 0);
         check(radius[i] == def.balls[i].radius && diameter[i] == 2 * radius[i]);
         check(connectivity[i] == i && offsets[i] == i + 1);
     }
     check(mass == def.mass);
-    const char *end = "\n</AppendedData>\n</VTKFile>\n";
-    assert_string_equal((const char *)vtp_array(&out, "offsets", sizeof offsets) + sizeof offsets, end);
+    vtp_check_blocks(&out);
     dem_buffer_release(&out);
 }
 
@@ -197,7 +182,7 @@ static void stl_of_two_balls_is_the_surface_of_their_union(void **state)
 {
     (void)state;
     const dem_ball balls[] = {{{0, 0, 0}, 1}, {{1, 0, 0}, 1}, {{0.1, 0, 0}, 0.5}, {{1, 0, 0}, 1}};
-    for (size_t count = 1; count <= 4; count++) {  // the third is swallowed, the fourth is the second again
+    for (size_t count = 1; count <= 4; count++) { // the third is swallowed, the fourth is the second again
         dem_clump_def def = balls_only(balls, count);
         dem_buffer out = written("stl", &def, (dem_export_options){0});
         triangles t = read_stl(&out);
@@ -206,7 +191,7 @@ static void stl_of_two_balls_is_the_surface_of_their_union(void **state)
         check_close(area, count == 1 ? 4 * DEM_PI : 6 * DEM_PI, SAG);
         for (size_t i = 0; i < 3 * t.count; i++) {
             double first = v3_norm(t.corners[i]) - 1, second = v3_distance(t.corners[i], v3(1, 0, 0)) - 1;
-            check_near(count == 1 ? first : fmin(first, second), 0, 1e-6);  // floats
+            check_near(count == 1 ? first : fmin(first, second), 0, 1e-6); // floats
         }
         free(t.corners);
         dem_buffer_release(&out);
@@ -229,7 +214,7 @@ static void stl_keeps_its_form_at_every_scale(void **state)
         dem_buffer_release(&out);
     }
     check(sizes[0] > 84 + 50 * 1000);
-    check_near((double)sizes[0], (double)sizes[1], 50 * 10);  // a corner on a circle may fall on either side
+    check_near((double)sizes[0], (double)sizes[1], 50 * 10); // a corner on a circle may fall on either side
 }
 
 static void png_needs_embree(void **state)

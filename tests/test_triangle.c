@@ -22,7 +22,7 @@ static void each_part_of_a_triangle_is_closest_where_it_should_be(void **state)
     (void)state;
     static const struct {
         dem_vec3 p, closest;
-        dem_feature feature;
+        dem_triangle_part part;
     } cases[] = {
         {{1, 1, 2}, {1, 1, 0}, DEM_ON_FACE},        {{1, 1, -2}, {1, 1, 0}, DEM_ON_FACE},
         {{1, 1, 0}, {1, 1, 0}, DEM_ON_FACE},        {{2, -1, 1}, {2, 0, 0}, DEM_ON_EDGE_AB},
@@ -40,10 +40,30 @@ static void each_part_of_a_triangle_is_closest_where_it_should_be(void **state)
     check(triangle_prepare(v3(0, 4, 0), v3(0, 0, 0), v3(4, 0, 0), &t) && t.length == sqrt(32) && t.normal.z == 1);
     check(triangle_prepare(v3(0, 0, 0), v3(4, 0, 0), v3(0, 4, 0), &t));
     for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
-        dem_spot s = triangle_closest(&t, cases[i].p);
+        dem_closest s = triangle_closest(&t, cases[i].p);
         check_vec(v3_add(cases[i].p, s.offset), cases[i].closest, 0);
-        assert_int_equal(s.feature, cases[i].feature);
+        assert_int_equal(s.part, cases[i].part);
         check_near(s.distance2, v3_norm2(v3_sub(cases[i].p, cases[i].closest)), 1e-14);
+    }
+}
+
+// where the distances to corner, edge and face are the same number
+static void beside_a_corner_the_closest_point_is_still_told_apart(void **state)
+{
+    (void)state;
+    dem_triangle t;
+    check(triangle_prepare(v3(0, 0, 0), v3(4, 0, 0), v3(0, 4, 0), &t));
+    for (double aside = 1e-3; aside > 1e-14; aside *= 0.1) {
+        dem_closest edge = triangle_closest(&t, v3(aside, -0.1 * aside, 1));
+        check(edge.part == DEM_ON_EDGE_AB);
+        check_vec(edge.offset, v3(0, 0.1 * aside, -1), 1e-15);
+        check_near(edge.aside2, 0.01 * aside * aside, 1e-6 * aside * aside);
+        dem_closest corner = triangle_closest(&t, v3(-aside, -0.1 * aside, 1));
+        check(corner.part == DEM_ON_VERTEX_A);
+        check_vec(corner.offset, v3(aside, 0.1 * aside, -1), 0);
+        dem_closest face = triangle_closest(&t, v3(aside, 0.1 * aside, 1));
+        check(face.part == DEM_ON_FACE && face.aside2 == 0);
+        check_vec(face.offset, v3(0, 0, -1), 0);
     }
 }
 
@@ -52,20 +72,20 @@ static void both_closest_points_of_a_wide_triangle_agree(void **state)
 {
     (void)state;
     dem_random r = random_stream(11, 0);
-    int features[7] = {0}, wide = 0;
+    int parts[7] = {0}, wide = 0;
     while (wide < 20000) {
         dem_vec3 a = random_point(&r), b = random_point(&r), c = random_point(&r), p = v3_scale(random_point(&r), 2);
         dem_triangle t;
         if (!triangle_prepare(a, b, c, &t) || v3_norm(v3_cross(v3_sub(b, a), v3_sub(c, a))) < 0.1 * t.length * t.length)
             continue;
         wide++;
-        dem_spot s = triangle_closest(&t, p);
+        dem_closest s = triangle_closest(&t, p);
         check_vec(v3_add(p, s.offset), dem_triangle_closest(p, a, b, c), 2e-13);
         check_near(sqrt(s.distance2), v3_distance(p, dem_triangle_closest(p, a, b, c)), 2e-15);
-        features[s.feature]++;
+        parts[s.part]++;
     }
     for (int k = 0; k < 7; k++)
-        check(features[k] > 500);
+        check(parts[k] > 500);
 }
 
 // The foot of p lies inside, at height h: the distance is h whatever the width. Turning the triangle moves its corners
@@ -86,7 +106,7 @@ static void the_distance_to_a_sliver_keeps_its_digits(void **state)
             for (int k = 0; k < 3; k++)
                 corners[k] = quat_rotate(turn, corners[k]);
             check(triangle_prepare(corners[i % 2], corners[1 - i % 2], corners[2], &t));
-            dem_spot s = triangle_closest(&t, quat_rotate(turn, p));
+            dem_closest s = triangle_closest(&t, quat_rotate(turn, p));
             check_near(sqrt(s.distance2), fabs(h), 2e-15);
             check_near(sqrt(s.distance2), v3_norm(s.offset), 1e-16);
         }
@@ -127,6 +147,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(each_part_of_a_triangle_is_closest_where_it_should_be),
+        cmocka_unit_test(beside_a_corner_the_closest_point_is_still_told_apart),
         cmocka_unit_test(both_closest_points_of_a_wide_triangle_agree),
         cmocka_unit_test(the_distance_to_a_sliver_keeps_its_digits),
         cmocka_unit_test(a_normal_is_square_to_its_edges),

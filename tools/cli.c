@@ -8,6 +8,7 @@
 
 #include "base/file.h"
 #include "base/memory.h"
+#include "base/nearest.h"
 #include "base/units.h"
 
 enum { MESSAGE_BYTES = 2048, NAME_BYTES = 48 };
@@ -31,49 +32,6 @@ static bool add_text(cli_texts *texts, const char *item)
         return false;
     texts->items[texts->count++] = item;
     return true;
-}
-
-// edits (insert, delete, replace, swap neighbours) that turn a into b, for short names (Damerau 1964)
-static size_t edits(const char *a, const char *b)
-{
-    size_t rows[3][NAME_BYTES + 1], m = strlen(a), n = strlen(b);
-    if (m > NAME_BYTES || n > NAME_BYTES)
-        return NAME_BYTES;
-    size_t *before = rows[0], *last = rows[1], *now = rows[2];
-    for (size_t j = 0; j <= n; j++)
-        last[j] = j;
-    for (size_t i = 1; i <= m; i++) {
-        now[0] = i;
-        for (size_t j = 1; j <= n; j++) {
-            size_t best = last[j - 1] + (a[i - 1] != b[j - 1]);
-            best = last[j] + 1 < best ? last[j] + 1 : best;
-            best = now[j - 1] + 1 < best ? now[j - 1] + 1 : best;
-            if (i > 1 && j > 1 && a[i - 1] == b[j - 2] && a[i - 2] == b[j - 1] && before[j - 2] + 1 < best)
-                best = before[j - 2] + 1;
-            now[j] = best;
-        }
-        size_t *spare = before;
-        before = last;
-        last = now;
-        now = spare;
-    }
-    return last[n];
-}
-
-const char *cli_nearest(const char *typed, const char *(*next)(const void *user, size_t index), const void *user)
-{
-    const char *best = NULL, *name;
-    size_t length = strlen(typed), best_edits = length / 3 + 2;
-    for (size_t i = 0; (name = next(user, i)); i++) {
-        // what was typed may also be a name cut short, or one with a tail
-        size_t shorter = strlen(name) < length ? strlen(name) : length;
-        size_t far = shorter >= 3 && strncmp(name, typed, shorter) == 0 ? 1 : edits(typed, name);
-        if (far < best_edits && far < length) {
-            best_edits = far;
-            best = name;
-        }
-    }
-    return best;
 }
 
 static const char *option_name(const void *user, size_t index)
@@ -163,14 +121,19 @@ static bool take_number(parser *p, const cli_option *option, const char *text)
 
 static bool take_quantity(parser *p, const cli_option *option, const char *text)
 {
-    bool length = option->kind == CLI_LENGTH;
+    static const struct {
+        dem_dimension dimension;
+        const char *name, *unit;
+    } kinds[] = {[CLI_LENGTH] = {DEM_DIMENSION_LENGTH, "length", " m"},
+                 [CLI_DENSITY] = {DEM_DIMENSION_DENSITY, "density", " kg/m3"},
+                 [CLI_TIME] = {DEM_DIMENSION_TIME, "time", " s"}};
     char name[NAME_BYTES];
     dem_error error;
     double value;
-    if (dem_quantity(text, length ? DEM_DIMENSION_LENGTH : DEM_DIMENSION_DENSITY, &value, &error) != DEM_OK)
+    if (dem_quantity(text, kinds[option->kind].dimension, &value, &error) != DEM_OK)
         return fail(p, "%s: %s", shown(option, name), error.text);
     if (!isfinite(value) || !in_range(option, value))
-        return refuse_value(p, option, length ? "length" : "density", length ? " m" : " kg/m3", text);
+        return refuse_value(p, option, kinds[option->kind].name, kinds[option->kind].unit, text);
     *(double *)option->value = value;
     return true;
 }
@@ -215,7 +178,7 @@ static bool take_choice(parser *p, const cli_option *option, const char *text)
         const char *between = i == 0 ? "" : i + 1 < names.count ? ", " : " or ";
         snprintf(all + strlen(all), sizeof all - strlen(all), "%s%s", between, names.names[i]);
     }
-    const char *near = cli_nearest(text, choice_name, &names);
+    const char *near = dem_nearest(text, choice_name, &names);
     if (near)
         return fail(p, "%s must be %s, not '%s'; did you mean %s?", shown(option, name), all, text, near);
     return fail(p, "%s must be %s, not '%s'", shown(option, name), all, text);
@@ -242,6 +205,7 @@ static bool take(parser *p, const cli_option *option, const char *text)
         return take_number(p, option, text);
     case CLI_LENGTH:
     case CLI_DENSITY:
+    case CLI_TIME:
         return take_quantity(p, option, text);
     case CLI_CHOICE:
         return take_choice(p, option, text);
@@ -291,7 +255,7 @@ static bool parse_long_option(parser *p, const char *argument)
     if (!option) {
         char typed[NAME_BYTES + 1];
         snprintf(typed, sizeof typed, "%.*s", (int)(length < NAME_BYTES ? length : NAME_BYTES), name);
-        const char *near = cli_nearest(typed, option_name, p->tool);
+        const char *near = dem_nearest(typed, option_name, p->tool);
         if (near)
             return fail(p, "unknown option --%s; did you mean --%s?", typed, near);
         return fail(p, "unknown option --%s", typed);

@@ -18,6 +18,7 @@ typedef enum cli_kind {
     CLI_PERCENT,  ///< double, as a fraction: "3" and "3 %" give 0.03; the range is in percent
     CLI_LENGTH,   ///< double [m], "2 mm"
     CLI_DENSITY,  ///< double [kg/m^3], "2.65 g/cm3"
+    CLI_TIME,     ///< double [s], "0.5 s"
     CLI_CHOICE,   ///< int, index into the names of `argument`
     CLI_TEXTS,    ///< cli_texts, one item each time the option is given
 } cli_kind;
@@ -84,9 +85,6 @@ int cli_error(const cli_tool *tool, const dem_error *error);
 
 /// Writes a buffer to standard output and releases it; returns the exit status, having said why it failed.
 int cli_print(const cli_tool *tool, dem_buffer *text);
-
-/// The name nearest to what was typed, or NULL if none is near; `next` yields names until NULL.
-const char *cli_nearest(const char *typed, const char *(*next)(const void *user, size_t index), const void *user);
 
 /// The help as text (cli_parse prints it).
 void cli_help(const cli_tool *tool, dem_buffer *text);

@@ -6,6 +6,7 @@
 
 #include "base/file.h"
 #include "base/memory.h"
+#include "base/nearest.h"
 #include "base/units.h"
 #include "cli.h"
 #include "math/vec.h"
@@ -277,7 +278,7 @@ static int run(const cli_tool *tool, settings *s, const cli_texts *operands)
     size_t index = 0;
     const dem_grain_kind *kind, *found = dem_grain_kind_find(s->kind);
     if (!found) {
-        const char *near = cli_nearest(s->kind, kind_name, NULL);
+        const char *near = dem_nearest(s->kind, kind_name, NULL);
         return near ? cli_wrong_usage(tool, "unknown kind '%s'; did you mean %s?", s->kind, near)
                     : cli_wrong_usage(tool, "unknown kind '%s'; --list shows all", s->kind);
     }

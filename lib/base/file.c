@@ -3,6 +3,7 @@
 
 #include <errno.h>
 #include <fcntl.h>
+#include <stdarg.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -99,21 +100,24 @@ static dem_status cannot_write(dem_error *error, const char *path)
                        strerror(errno));
 }
 
-static dem_status write_directly(int file, const char *path, const void *bytes, size_t size, dem_error *error)
+static dem_status write_directly(int file, const char *path, const dem_piece *pieces, size_t count, dem_error *error)
 {
-    return write_all(file, bytes, size) ? DEM_OK : cannot_write(error, path);
+    for (size_t i = 0; i < count; i++)
+        if (!write_all(file, pieces[i].bytes, pieces[i].size))
+            return cannot_write(error, path);
+    return DEM_OK;
 }
 
-dem_status dem_file_write(const char *path, const void *bytes, size_t size, dem_error *error)
+dem_status dem_file_write_pieces(const char *path, const dem_piece *pieces, size_t count, dem_error *error)
 {
     if (strcmp(path, "-") == 0)
-        return write_directly(STDOUT_FILENO, "standard output", bytes, size, error);
+        return write_directly(STDOUT_FILENO, "standard output", pieces, count, error);
     struct stat about;
     if (stat(path, &about) == 0 && !S_ISREG(about.st_mode)) {
         int file = open(path, O_WRONLY | O_CLOEXEC);
         if (file < 0)
             return cannot_write(error, path);
-        dem_status status = write_directly(file, path, bytes, size, error);
+        dem_status status = write_directly(file, path, pieces, count, error);
         if (close(file) != 0 && status == DEM_OK)
             status = cannot_write(error, path);
         return status;
@@ -131,7 +135,8 @@ dem_status dem_file_write(const char *path, const void *bytes, size_t size, dem_
     mode_t mask = umask(0);
     umask(mask);
     fchmod(file, 0666 & ~mask);
-    if (!write_all(file, bytes, size) || fsync(file) != 0)
+    status = write_directly(file, path, pieces, count, error);
+    if (status == DEM_OK && fsync(file) != 0)
         status = cannot_write(error, path);
     if (close(file) != 0 && status == DEM_OK)
         status = cannot_write(error, path);
@@ -143,11 +148,53 @@ dem_status dem_file_write(const char *path, const void *bytes, size_t size, dem_
     return status;
 }
 
+dem_status dem_file_write(const char *path, const void *bytes, size_t size, dem_error *error)
+{
+    return dem_file_write_pieces(path, &(dem_piece){bytes, size}, 1, error);
+}
+
 dem_status dem_file_write_buffer(const char *path, dem_buffer *buffer, dem_error *error)
 {
-    dem_status status = buffer->failed ? dem_fail_memory(error) : dem_file_write(path, buffer->data, buffer->size, error);
+    dem_status status =
+        buffer->failed ? dem_fail_memory(error) : dem_file_write(path, buffer->data, buffer->size, error);
     dem_buffer_release(buffer);
     return status;
+}
+
+dem_status dem_folder_create(const char *path, dem_error *error)
+{
+    char *part = strdup(path);
+    if (!part)
+        return dem_fail_memory(error);
+    bool made = true;
+    for (char *slash = part; made && slash;) {
+        slash = strchr(slash + 1, '/');
+        if (slash)
+            *slash = 0;
+        made = mkdir(part, 0777) == 0 || errno == EEXIST;
+        if (slash)
+            *slash = '/';
+    }
+    free(part);
+    struct stat about;
+    if (made && stat(path, &about) == 0 && !S_ISDIR(about.st_mode))
+        return dem_fail_at(error, DEM_CANNOT_WRITE, path, 0, "is a file, no folder; choose another place with -o");
+    return made ? DEM_OK : cannot_write(error, path);
+}
+
+char *dem_path_join(const char *folder, const char *format, ...)
+{
+    char *name, *path;
+    va_list args;
+    va_start(args, format);
+    int length = vasprintf(&name, format, args);
+    va_end(args);
+    if (length < 0)
+        return NULL;
+    if (asprintf(&path, "%s/%s", folder, name) < 0)
+        path = NULL;
+    free(name);
+    return path;
 }
 
 const char *dem_file_name(const char *path)

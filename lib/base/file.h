@@ -13,8 +13,21 @@ dem_status dem_file_read(const char *path, dem_buffer *bytes, dem_error *error);
 /// A path that is no regular file (a pipe, /dev/stdout) is written directly. Error: DEM_CANNOT_WRITE.
 dem_status dem_file_write(const char *path, const void *bytes, size_t size, dem_error *error);
 
+/// The same of several pieces, one behind the other.
+typedef struct dem_piece {
+    const void *bytes;
+    size_t size;
+} dem_piece;
+dem_status dem_file_write_pieces(const char *path, const dem_piece *pieces, size_t count, dem_error *error);
+
 /// Writes and releases a buffer; a buffer that has failed is DEM_NO_MEMORY.
 dem_status dem_file_write_buffer(const char *path, dem_buffer *buffer, dem_error *error);
+
+/// Makes a folder, and those it lies in. Error: DEM_CANNOT_WRITE.
+dem_status dem_folder_create(const char *path, dem_error *error);
+
+/// The path of a file in a folder, printed as by printf; free it. NULL: out of memory.
+char *dem_path_join(const char *folder, const char *format, ...) DEM_PRINTF(2, 3);
 
 /// The part of a path behind the last '/'.
 const char *dem_file_name(const char *path);

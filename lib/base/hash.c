@@ -13,12 +13,18 @@ static void finish(struct sha256_ctx *state, char text[65])
         snprintf(text + 2 * i, 3, "%02x", digest[i]);
 }
 
-void dem_sha256(const void *bytes, size_t size, char text[65])
+void dem_sha256_pieces(const dem_piece *pieces, size_t count, char text[65])
 {
     struct sha256_ctx state;
     sha256_init(&state);
-    sha256_update(&state, size, bytes);
+    for (size_t i = 0; i < count; i++)
+        sha256_update(&state, pieces[i].size, pieces[i].bytes);
     finish(&state, text);
+}
+
+void dem_sha256(const void *bytes, size_t size, char text[65])
+{
+    dem_sha256_pieces(&(dem_piece){bytes, size}, 1, text);
 }
 
 dem_status dem_sha256_file(const char *path, char text[65], dem_error *error)

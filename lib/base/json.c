@@ -5,6 +5,9 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/json_text.h"
+#include "base/memory.h"
+
 dem_status dem_json_parse(const char *text, size_t size, const char *file, dem_json **root, dem_error *error)
 {
     json_error_t where;
@@ -13,6 +16,19 @@ dem_status dem_json_parse(const char *text, size_t size, const char *file, dem_j
         return DEM_OK;
     return dem_fail_at(error, DEM_BAD_INPUT, file, where.line > 0 ? where.line : 0, "not valid JSON: %s (column %d)",
                        where.text, where.column);
+}
+
+dem_status dem_json_parse_lenient(const char *text, size_t size, const char *file, dem_json **root, dem_error *error)
+{
+    *root = NULL;
+    char *plain = dem_alloc(size, 1);
+    if (!plain)
+        return dem_fail_memory(error);
+    memcpy(plain, text, size);
+    dem_json_blank(plain, size);
+    dem_status status = dem_json_parse(plain, size, file, root, error);
+    free(plain);
+    return status;
 }
 
 void dem_json_release(dem_json *root)
@@ -33,6 +49,12 @@ const dem_json *dem_json_item(const dem_json *array, size_t index)
 size_t dem_json_length(const dem_json *array)
 {
     return json_array_size(array);
+}
+
+const char *dem_json_next(const dem_json *object, const char *key)
+{
+    json_t *o = (json_t *)object; // iterators are not const
+    return json_object_iter_key(key ? json_object_iter_next(o, json_object_key_to_iter(key)) : json_object_iter(o));
 }
 
 bool dem_json_is_object(const dem_json *value)
@@ -82,6 +104,26 @@ const char *dem_json_string(const dem_json *value)
 char *dem_json_text(const dem_json *value)
 {
     return json_dumps(value, JSON_COMPACT | JSON_ENCODE_ANY | JSON_REAL_PRECISION(17));
+}
+
+dem_json *dem_json_new_object(void)
+{
+    return json_object();
+}
+
+dem_json *dem_json_new_string(const char *text)
+{
+    return json_string(text);
+}
+
+bool dem_json_set_member(dem_json *object, const char *key, dem_json *value)
+{
+    return json_object_set_new(object, key, value) == 0;
+}
+
+bool dem_json_set_item(dem_json *array, size_t index, dem_json *value)
+{
+    return json_array_set_new(array, index, value) == 0;
 }
 
 dem_json_writer dem_json_begin(dem_buffer *out)
@@ -165,7 +207,7 @@ void dem_json_put_number(dem_json_writer *w, const char *key, double value)
 {
     put_lead(w, key);
     if (value == 0 && signbit(value))
-        dem_buffer_text(w->out, "-0.0");  // "-0" is a whole number, which has no sign
+        dem_buffer_text(w->out, "-0.0"); // "-0" is a whole number, which has no sign
     else if (isfinite(value))
         dem_buffer_number(w->out, value, 17);
     else

@@ -8,12 +8,16 @@ typedef struct json_t dem_json;
 
 /// Parses one JSON value; `file` is for messages. NaN and infinities do not exist in JSON.
 dem_status dem_json_parse(const char *text, size_t size, const char *file, dem_json **root, dem_error *error);
+/// The same with comments and trailing commas allowed (base/json_text.h).
+dem_status dem_json_parse_lenient(const char *text, size_t size, const char *file, dem_json **root, dem_error *error);
 void dem_json_release(dem_json *root);
 
 /// The getters take NULL and a value of another type; they then return NULL, 0 or false.
 const dem_json *dem_json_member(const dem_json *object, const char *key);
 const dem_json *dem_json_item(const dem_json *array, size_t index);
 size_t dem_json_length(const dem_json *array);
+/// The keys of an object in the order of the file: the one behind `key`, the first for NULL; NULL: no more.
+const char *dem_json_next(const dem_json *object, const char *key);
 bool dem_json_is_object(const dem_json *value);
 bool dem_json_is_array(const dem_json *value);
 bool dem_json_is_null(const dem_json *value);
@@ -23,6 +27,12 @@ bool dem_json_bool(const dem_json *value, bool *flag);
 const char *dem_json_string(const dem_json *value);
 /// The value as compact text; free it.
 char *dem_json_text(const dem_json *value);
+
+/// Changing a parsed value. All take over `value` (NULL: failed to be made) and return false without memory.
+dem_json *dem_json_new_object(void);
+dem_json *dem_json_new_string(const char *text);
+bool dem_json_set_member(dem_json *object, const char *key, dem_json *value);
+bool dem_json_set_item(dem_json *array, size_t index, dem_json *value);
 
 /// Writes nested values in order. Members of the outermost object stand on lines of their own, as do the
 /// items of an array opened with `lines`; everything deeper is compact.

@@ -1,8 +1,10 @@
 /// Wide numbers: a few doubles or floats taken through the same arithmetic at once. The one place with intrinsics.
 ///
 /// The width follows the instruction set the file is compiled for: 8 doubles (AVX-512), 4 (AVX2) or 1 (anything). All
-/// widths give the same bits: + - * / and sqrt are rounded alike everywhere, nothing is fused, and what depends on an
-/// order is defined on blocks of DEM_BLOCK_LANES whatever the width.
+/// widths give the same bits: + - * / sqrt and fused multiply-adds are rounded alike everywhere, they are fused only
+/// where `wide_fma` (a b + c), `wide_fms` (a b - c) or `wide_fnma` (c - a b) says so, and what depends on an order is
+/// defined on blocks of DEM_BLOCK_LANES whatever the width. A processor that cannot fuse does it in the library: right,
+/// but slow.
 ///
 /// Rows are 8 doubles on a 64-byte boundary. `rows_*` turns 8 rows (or DEM_WIDTH of them) into 8 columns and back.
 #ifndef DEM_BASE_SIMD_H
@@ -44,6 +46,18 @@ DEM_INLINE wide wide_sqrt(wide a)
 DEM_INLINE wide wide_abs(wide a)
 {
     return _mm512_abs_pd(a);
+}
+DEM_INLINE wide wide_fma(wide a, wide b, wide c)
+{
+    return _mm512_fmadd_pd(a, b, c);
+}
+DEM_INLINE wide wide_fms(wide a, wide b, wide c)
+{
+    return _mm512_fmsub_pd(a, b, c);
+}
+DEM_INLINE wide wide_fnma(wide a, wide b, wide c)
+{
+    return _mm512_fnmadd_pd(a, b, c);
 }
 DEM_INLINE wide wide_max(wide a, wide b)
 {
@@ -206,7 +220,7 @@ DEM_INLINE void indices_pack(uint32_t *p, uint32_t bits, uint32_t first)
     _mm512_mask_compressstoreu_epi32(p, (__mmask16)bits, _mm512_add_epi32(ramp, _mm512_set1_epi32((int)first)));
 }
 
-#elif defined(__AVX2__)
+#elif defined(__AVX2__) && defined(__FMA__)
 #include <immintrin.h>
 enum { DEM_WIDTH = 4, DEM_WIDTH_FLOAT = 8 };
 typedef __m256d wide;
@@ -232,6 +246,18 @@ DEM_INLINE wide wide_sqrt(wide a)
 DEM_INLINE wide wide_abs(wide a)
 {
     return _mm256_andnot_pd(_mm256_set1_pd(-0.0), a);
+}
+DEM_INLINE wide wide_fma(wide a, wide b, wide c)
+{
+    return _mm256_fmadd_pd(a, b, c);
+}
+DEM_INLINE wide wide_fms(wide a, wide b, wide c)
+{
+    return _mm256_fmsub_pd(a, b, c);
+}
+DEM_INLINE wide wide_fnma(wide a, wide b, wide c)
+{
+    return _mm256_fnmadd_pd(a, b, c);
 }
 DEM_INLINE wide wide_max(wide a, wide b)
 {
@@ -395,6 +421,18 @@ DEM_INLINE wide wide_sqrt(wide a)
 DEM_INLINE wide wide_abs(wide a)
 {
     return fabs(a);
+}
+DEM_INLINE wide wide_fma(wide a, wide b, wide c)
+{
+    return __builtin_fma(a, b, c);
+}
+DEM_INLINE wide wide_fms(wide a, wide b, wide c)
+{
+    return __builtin_fma(a, b, -c);
+}
+DEM_INLINE wide wide_fnma(wide a, wide b, wide c)
+{
+    return __builtin_fma(-a, b, c);
 }
 DEM_INLINE wide wide_max(wide a, wide b)
 {

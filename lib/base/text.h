@@ -25,6 +25,8 @@ void dem_buffer_text(dem_buffer *buffer, const char *text);
 void dem_buffer_print(dem_buffer *buffer, const char *format, ...) DEM_PRINTF(2, 3);
 /// `digits` significant digits (17: read back without loss), point as decimal mark.
 void dem_buffer_number(dem_buffer *buffer, double value, int digits);
+/// As few digits, from 15 on, as are read back without loss; "nan" without a sign.
+void dem_buffer_shortest(dem_buffer *buffer, double value);
 void dem_buffer_release(dem_buffer *buffer);
 
 /// Writes a number as dem_buffer_number does; returns `text`.

@@ -93,6 +93,8 @@ static dem_status check_mass(const dem_clump_def *def, dem_error *error)
     // equality is a flat plate; the slack is for moments that were rounded
     if (moment[2] > (moment[0] + moment[1]) * (1 + 1e-9))
         return refuse(error, "inertia: I3 is larger than I1 + I2, which no body can have; check the moments");
+    if (def->mass_from > DEM_MASS_GIVEN)
+        return refuse(error, "mass_from: must be that of the mesh, of the union, or given; use one of these");
     if (!(isnan(def->union_volume) || positive(def->union_volume)))
         return refuse(error, "union.volume: must be positive and finite; leave it out where it is not known");
     return DEM_OK;

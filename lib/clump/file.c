@@ -13,6 +13,10 @@
 #define SCHEMA "dem-clump/"
 #define VERSION "1"
 
+static const char *const mass_sources[] = {
+    [DEM_MASS_FROM_MESH] = "mesh", [DEM_MASS_FROM_UNION] = "union", [DEM_MASS_GIVEN] = "given"};
+enum { MASS_SOURCES = sizeof mass_sources / sizeof *mass_sources };
+
 // ---- writing
 
 static void put_figures(dem_json_writer *w, const void *values, const dem_figure *figures, int count)
@@ -38,7 +42,7 @@ static void put_mass(dem_json_writer *w, const dem_clump_def *def)
     dem_json_put_number(w, "mass", def->mass);
     dem_json_put_number(w, "volume", def->volume);
     dem_json_put_numbers(w, "inertia", def->inertia, 3);
-    dem_json_put_string(w, "mass_from", def->mass_from == DEM_MASS_FROM_UNION ? "union" : "mesh");
+    dem_json_put_string(w, "mass_from", mass_sources[def->mass_from]);
     dem_json_open_object(w, "to_mesh");
     put_vec(w, "position", def->position);
     dem_quat q = def->orientation;
@@ -82,7 +86,7 @@ void dem_clump_put_figures(dem_json_writer *w, const dem_clump_def *def)
     dem_json_open_object(w, "made");
     dem_json_put_string(w, "method", def->method);
     dem_json_put_raw(w, "parameters", def->parameters);
-    dem_json_put_whole(w, "seed", (int64_t)def->seed);  // JSON whole numbers are signed: seeds from 2^63 wrap
+    dem_json_put_whole(w, "seed", (int64_t)def->seed); // JSON whole numbers are signed: seeds from 2^63 wrap
     dem_json_put_number(w, "seconds", def->seconds);
     dem_json_put_string(w, "version", def->version);
     dem_json_close(w, '}');
@@ -124,7 +128,7 @@ typedef enum need { NEEDED, OPTIONAL } need;
 typedef struct reader {
     const char *file;
     dem_error *error;
-    const char *section;  // where `object` stands in the file, "" for the outermost
+    const char *section; // where `object` stands in the file, "" for the outermost
     const dem_json *object;
 } reader;
 
@@ -217,11 +221,14 @@ static dem_status read_mass(const reader *r, dem_clump_def *def)
     DEM_TRY(read_numbers(r, "inertia", NEEDED, "needs 3 finite numbers I1 <= I2 <= I3 [kg m^2]", 3, def->inertia));
     def->volume = def->mass / def->density;
     DEM_TRY(read_numbers(r, "volume", OPTIONAL, "needs a finite number [m^3]", 1, &def->volume));
-    const char *from = "mesh";
+    const char *from = mass_sources[DEM_MASS_FROM_MESH];
     DEM_TRY(read_text(r, "mass_from", &from));
-    if (strcmp(from, "mesh") != 0 && strcmp(from, "union") != 0)
-        return refuse(r, "mass_from", "must be \"mesh\" or \"union\"");
-    def->mass_from = strcmp(from, "union") == 0 ? DEM_MASS_FROM_UNION : DEM_MASS_FROM_MESH;
+    int source = 0;
+    while (source < MASS_SOURCES && strcmp(from, mass_sources[source]) != 0)
+        source++;
+    if (source == MASS_SOURCES)
+        return refuse(r, "mass_from", "must be \"mesh\", \"union\" or \"given\"");
+    def->mass_from = (dem_mass_source)source;
     return DEM_OK;
 }
 
@@ -387,7 +394,7 @@ dem_status dem_clump_decode(const char *text, size_t size, const char *file, dem
         def.balls = balls;
         def.parameters = parameters;
         status = dem_clump_create(&def, clump, error);
-        if (status == DEM_BAD_INPUT && error)  // its message names the key; add the file
+        if (status == DEM_BAD_INPUT && error) // its message names the key; add the file
             snprintf(error->file, sizeof error->file, "%s", file);
     }
     free(parameters);

@@ -12,7 +12,7 @@
 #include "math/vec.h"
 
 /// What the closest point lies on.
-typedef enum dem_feature {
+typedef enum dem_triangle_part {
     DEM_ON_FACE,
     DEM_ON_EDGE_AB,
     DEM_ON_EDGE_BC,
@@ -20,23 +20,23 @@ typedef enum dem_feature {
     DEM_ON_VERTEX_A,
     DEM_ON_VERTEX_B,
     DEM_ON_VERTEX_C,
-} dem_feature;
+} dem_triangle_part;
 
 /// A triangle made ready: two cache lines.
 typedef struct dem_triangle {
-    dem_vec3 a, b, c;   ///< [m]
-    dem_vec3 normal;    ///< unit, along (b - a) x (c - a)
-    double inverse[3];  ///< 1 / squared lengths of ab, bc, ca [1/m^2]
-    double length;      ///< of the longest edge [m]
+    dem_vec3 a, b, c;  ///< [m]
+    dem_vec3 normal;   ///< unit, along (b - a) x (c - a)
+    double inverse[3]; ///< 1 / squared lengths of ab, bc, ca [1/m^2]
+    double length;     ///< of the longest edge [m]
 } dem_triangle;
 
 /// The closest point of a triangle as seen from a point p.
-typedef struct dem_spot {
-    dem_vec3 offset;   ///< from p to it [m]
-    double distance2;  ///< of p, squared [m^2]
-    double aside2;     ///< squared distance of the foot of p on the plane; 0 on the face [m^2]
-    int64_t feature;   ///< a dem_feature, as wide as the numbers beside it
-} dem_spot;
+typedef struct dem_closest {
+    dem_vec3 offset;  ///< from p to it [m]
+    double distance2; ///< of p, squared [m^2]
+    double aside2;    ///< squared distance of the foot of p on the plane; 0 on the face [m^2]
+    int64_t part;     ///< a dem_triangle_part, as wide as the numbers beside it
+} dem_closest;
 
 /// Triangles of less area / (longest edge)^2 are degenerate: rounding alone would turn their normals.
 #define DEM_TRIANGLE_NARROWEST 1e-12
@@ -64,35 +64,35 @@ static inline bool triangle_prepare(dem_vec3 a, dem_vec3 b, dem_vec3 c, dem_tria
 
 // A point of the edge from a to b, all seen from p: the closest to p and so to its foot. At its ends it is exactly the
 // corner, so that all triangles around a corner find the same.
-TRIANGLE_INLINE dem_spot triangle_edge_spot_(dem_vec3 a, dem_vec3 b, dem_vec3 ab, double inverse, dem_vec3 foot,
-                                             int edge)
+TRIANGLE_INLINE dem_closest triangle_edge_spot_(dem_vec3 a, dem_vec3 b, dem_vec3 ab, double inverse, dem_vec3 foot,
+                                                int edge)
 {
     double t = -v3_dot(a, ab) * inverse;
     bool at_a = t <= 0, at_b = t >= 1;
-    dem_spot s;
+    dem_closest s;
     s.offset.x = at_a ? a.x : at_b ? b.x : a.x + t * ab.x;
     s.offset.y = at_a ? a.y : at_b ? b.y : a.y + t * ab.y;
     s.offset.z = at_a ? a.z : at_b ? b.z : a.z + t * ab.z;
     s.distance2 = 0;
     s.aside2 = v3_norm2(v3_sub(s.offset, foot));
-    s.feature = at_a ? DEM_ON_VERTEX_A + edge : at_b ? DEM_ON_VERTEX_A + (edge + 1) % 3 : DEM_ON_EDGE_AB + edge;
+    s.part = at_a ? DEM_ON_VERTEX_A + edge : at_b ? DEM_ON_VERTEX_A + (edge + 1) % 3 : DEM_ON_EDGE_AB + edge;
     return s;
 }
 
-TRIANGLE_INLINE dem_spot triangle_either_(bool second, dem_spot a, dem_spot b)
+TRIANGLE_INLINE dem_closest triangle_either_(bool second, dem_closest a, dem_closest b)
 {
-    dem_spot s;
+    dem_closest s;
     s.offset.x = second ? b.offset.x : a.offset.x;
     s.offset.y = second ? b.offset.y : a.offset.y;
     s.offset.z = second ? b.offset.z : a.offset.z;
     s.distance2 = 0;
     s.aside2 = second ? b.aside2 : a.aside2;
-    s.feature = second ? b.feature : a.feature;
+    s.part = second ? b.part : a.part;
     return s;
 }
 
 // in lanes all is computed and then chosen from; alone only what is needed
-TRIANGLE_INLINE dem_spot triangle_spot_(const dem_triangle *t, dem_vec3 p, bool lanes)
+TRIANGLE_INLINE dem_closest triangle_spot_(const dem_triangle *t, dem_vec3 p, bool lanes)
 {
     dem_vec3 ab = v3_sub(t->b, t->a), bc = v3_sub(t->c, t->b), ca = v3_sub(t->a, t->c);
     dem_vec3 a = v3_sub(t->a, p), b = v3_sub(t->b, p), c = v3_sub(t->c, p);
@@ -102,7 +102,7 @@ TRIANGLE_INLINE dem_spot triangle_spot_(const dem_triangle *t, dem_vec3 p, bool 
     bool beyond_bc = !(v3_dot(t->normal, v3_cross(b, bc)) > 0);
     bool beyond_ca = !(v3_dot(t->normal, v3_cross(c, ca)) > 0);
     bool inside = !beyond_ab & !beyond_bc & !beyond_ca;
-    dem_spot best = {.offset = foot, .aside2 = INFINITY, .feature = DEM_ON_FACE}, next;
+    dem_closest best = {.offset = foot, .aside2 = INFINITY, .part = DEM_ON_FACE}, next;
     if (lanes || beyond_ab) {
         next = triangle_edge_spot_(a, b, ab, t->inverse[0], foot, 0);
         best = triangle_either_(beyond_ab, best, next);
@@ -120,13 +120,13 @@ TRIANGLE_INLINE dem_spot triangle_spot_(const dem_triangle *t, dem_vec3 p, bool 
     return best;
 }
 
-static inline dem_spot triangle_closest(const dem_triangle *t, dem_vec3 p)
+static inline dem_closest triangle_closest(const dem_triangle *t, dem_vec3 p)
 {
     return triangle_spot_(t, p, false);
 }
 
 /// The same bits without branches, for loops that are to become vector code.
-TRIANGLE_INLINE dem_spot triangle_closest_lane(const dem_triangle *t, dem_vec3 p)
+TRIANGLE_INLINE dem_closest triangle_closest_lane(const dem_triangle *t, dem_vec3 p)
 {
     return triangle_spot_(t, p, true);
 }

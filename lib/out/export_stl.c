@@ -1,33 +1,16 @@
-// The surface of the union as a binary STL. Each ball is a subdivided icosahedron, of which only the part on its own
-// side of the planes through the circles where balls cut each other is kept; cut corners are moved onto the circle.
-// Neighbouring parts meet on these circles up to the sag of their facets, so it looks closed but is not welded.
+// The surface of the union as a binary STL.
 #include <stdlib.h>
-#include <string.h>
 
 #include "base/memory.h"
 #include "out/export.h"
+#include "out/facets.h"
 
 enum {
     HEADER = 80,
     FINE = 3,
-    COARSE = 2,  // times each triangle of the icosahedron is divided in four
+    COARSE = 2,
     MANY = 500,  // balls from which coarse is fine enough
 };
-
-// the circle in which a neighbour cuts the ball: the part with x . u > h is hidden, x from the ball's centre
-typedef struct cut {
-    dem_vec3 u;
-    double h, s;  // height and radius of the circle
-} cut;
-
-typedef struct writer {
-    dem_buffer *out;
-    uint32_t count;
-    dem_ball ball;
-    cut *cuts;
-    size_t cut_count;
-    dem_vec3 *polygon, *rest;  // [3 + cuts]
-} writer;
 
 static void put_floats(dem_buffer *out, dem_vec3 v)
 {
@@ -35,140 +18,34 @@ static void put_floats(dem_buffer *out, dem_vec3 v)
     dem_buffer_bytes(out, f, sizeof f);
 }
 
-static void put_triangle(writer *w, dem_vec3 a, dem_vec3 b, dem_vec3 c)
+static void put_facet(dem_buffer *out, const dem_facet *f)
 {
-    dem_vec3 n = v3_cross(v3_sub(b, a), v3_sub(c, a));
-    if (!(v3_norm2(n) > 0))
-        return;
-    put_floats(w->out, v3_unit(n));
-    put_floats(w->out, v3_add(w->ball.centre, a));
-    put_floats(w->out, v3_add(w->ball.centre, b));
-    put_floats(w->out, v3_add(w->ball.centre, c));
-    dem_buffer_bytes(w->out, "\0\0", 2);
-    w->count++;
-}
-
-static dem_vec3 onto_circle(dem_vec3 x, const cut *c)
-{
-    dem_vec3 flat = v3_along(x, -v3_dot(x, c->u), c->u);
-    return v3_add(v3_scale(c->u, c->h), v3_scale(v3_unit(flat), c->s));
-}
-
-// cuts the convex polygon (Sutherland & Hodgman 1974); returns the corners left
-static size_t cut_polygon(writer *w, size_t corners, const cut *c)
-{
-    size_t left = 0;
-    for (size_t i = 0; i < corners; i++) {
-        dem_vec3 a = w->polygon[i], b = w->polygon[(i + 1) % corners];
-        double over_a = v3_dot(a, c->u) - c->h, over_b = v3_dot(b, c->u) - c->h;
-        if (over_a <= 0)
-            w->rest[left++] = a;
-        if ((over_a <= 0) != (over_b <= 0))
-            w->rest[left++] = onto_circle(v3_along(a, over_a / (over_a - over_b), v3_sub(b, a)), c);
-    }
-    dem_vec3 *swap = w->polygon;
-    w->polygon = w->rest;
-    w->rest = swap;
-    return left;
-}
-
-static void put_facet(writer *w, dem_vec3 a, dem_vec3 b, dem_vec3 c)
-{
-    size_t corners = 3;
-    w->polygon[0] = v3_scale(a, w->ball.radius);
-    w->polygon[1] = v3_scale(b, w->ball.radius);
-    w->polygon[2] = v3_scale(c, w->ball.radius);
-    for (size_t i = 0; i < w->cut_count && corners; i++) {
-        bool crossed = false;
-        for (size_t k = 0; k < corners && !crossed; k++)
-            crossed = v3_dot(w->polygon[k], w->cuts[i].u) > w->cuts[i].h;
-        if (crossed)
-            corners = cut_polygon(w, corners, &w->cuts[i]);
-    }
-    for (size_t k = 2; k < corners; k++)
-        put_triangle(w, w->polygon[0], w->polygon[k - 1], w->polygon[k]);
-}
-
-static void divide_facet(writer *w, dem_vec3 a, dem_vec3 b, dem_vec3 c, int times)
-{
-    if (times == 0) {
-        put_facet(w, a, b, c);
-        return;
-    }
-    dem_vec3 ab = v3_unit(v3_add(a, b)), bc = v3_unit(v3_add(b, c)), ca = v3_unit(v3_add(c, a));
-    divide_facet(w, a, ab, ca, times - 1);
-    divide_facet(w, ab, b, bc, times - 1);
-    divide_facet(w, ca, bc, c, times - 1);
-    divide_facet(w, ab, bc, ca, times - 1);
-}
-
-static void put_icosahedron(writer *w, int times)
-{
-    static const unsigned char faces[20][3] = {{0, 11, 5}, {0, 5, 1},  {0, 1, 7},   {0, 7, 10}, {0, 10, 11},
-                                               {1, 5, 9},  {5, 11, 4}, {11, 10, 2}, {10, 7, 6}, {7, 1, 8},
-                                               {3, 9, 4},  {3, 4, 2},  {3, 2, 6},   {3, 6, 8},  {3, 8, 9},
-                                               {4, 9, 5},  {2, 4, 11}, {6, 2, 10},  {8, 6, 7},  {9, 8, 1}};
-    const double g = 1.618033988749894848;
-    const dem_vec3 corners[12] = {{-1, g, 0},  {1, g, 0},  {-1, -g, 0}, {1, -g, 0}, {0, -1, g},  {0, 1, g},
-                                  {0, -1, -g}, {0, 1, -g}, {g, 0, -1},  {g, 0, 1},  {-g, 0, -1}, {-g, 0, 1}};
-    for (int i = 0; i < 20; i++)
-        divide_facet(w, v3_unit(corners[faces[i][0]]), v3_unit(corners[faces[i][1]]), v3_unit(corners[faces[i][2]]),
-                     times);
-}
-
-// the circles on ball i; false: another ball holds it whole
-static bool find_cuts(writer *w, const dem_ball *balls, size_t count, size_t i)
-{
-    w->cut_count = 0;
-    double r = balls[i].radius;
-    for (size_t j = 0; j < count; j++) {
-        dem_vec3 apart = v3_sub(balls[j].centre, balls[i].centre);
-        double d = v3_norm(apart), other = balls[j].radius;
-        if (j == i || d >= r + other)
-            continue;
-        if (d <= fabs(r - other)) {
-            if (r < other || (r == other && j < i))
-                return false;
-            continue;
-        }
-        double h = (d + (r - other) * (r + other) / d) / 2;
-        w->cuts[w->cut_count++] = (cut){v3_scale(apart, 1 / d), h, sqrt(fmax(0, (r - h) * (r + h)))};
-    }
-    return true;
-}
-
-static void put_balls(writer *w, const dem_ball *balls, size_t count)
-{
-    for (size_t i = 0; i < count; i++) {
-        w->ball = balls[i];
-        if (find_cuts(w, balls, count, i))
-            put_icosahedron(w, count < MANY ? FINE : COARSE);
-    }
+    const dem_vec3 *c = f->corners;
+    put_floats(out, v3_unit(v3_cross(v3_sub(c[1], c[0]), v3_sub(c[2], c[0]))));
+    for (int k = 0; k < 3; k++)
+        put_floats(out, c[k]);
+    dem_buffer_bytes(out, "\0\0", 2);
 }
 
 static dem_status write_stl(const dem_clump *clump, const dem_export_options *options, dem_buffer *out,
                             dem_error *error)
 {
+    static const char header[HEADER] = "union of the spheres of a clump; dem-clump " DEM_VERSION;
     dem_clump_def def = dem_clump_view(clump);
-    size_t n = def.ball_count, start = out->size;
-    char header[HEADER + sizeof(uint32_t)] = "union of the spheres of a clump; dem-clump " DEM_VERSION;
     dem_ball *balls = dem_export_balls(options, &def);
-    writer w = {.out = out,
-                .cuts = dem_alloc(n, sizeof *w.cuts),
-                .polygon = dem_alloc(n + 3, sizeof *w.polygon),
-                .rest = dem_alloc(n + 3, sizeof *w.rest)};
-    dem_buffer_bytes(out, header, sizeof header);
-    bool failed = !balls || !w.cuts || !w.polygon || !w.rest;
-    if (!failed)
-        put_balls(&w, balls, n);
-    failed = failed || out->failed;
-    if (!failed)
-        memcpy(out->data + start + HEADER, &w.count, sizeof w.count);
+    if (!balls)
+        return dem_fail_memory(error);
+    dem_facets facets;
+    dem_status status = dem_balls_facets(balls, def.ball_count, def.ball_count < MANY ? FINE : COARSE, &facets, error);
     free(balls);
-    free(w.cuts);
-    free(w.polygon);
-    free(w.rest);
-    return failed ? dem_fail_memory(error) : DEM_OK;
+    DEM_TRY(status);
+    uint32_t count = (uint32_t)facets.count;
+    dem_buffer_bytes(out, header, sizeof header);
+    dem_buffer_bytes(out, &count, sizeof count);
+    for (size_t i = 0; i < facets.count; i++)
+        put_facet(out, &facets.facets[i]);
+    dem_facets_release(&facets);
+    return out->failed ? dem_fail_memory(error) : DEM_OK;
 }
 
 extern const dem_exporter dem_export_stl;

@@ -39,7 +39,7 @@ typedef struct dem_render_scene {
 typedef struct dem_camera {
     dem_vec3 forward;  ///< direction of sight
     dem_vec3 up;       ///< normal of the ground, upwards in the picture; not parallel to `forward`
-    double field_deg;  ///< vertical angle of view; 0: parallel rays
+    double field_deg;  ///< angle of view across the smaller side of the picture; 0: parallel rays
     double margin;     ///< [-]
 } dem_camera;
 

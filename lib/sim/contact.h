@@ -44,12 +44,11 @@ DEM_INLINE void put3(contact_batch *b, int at, size_t g, wide3 v)
 /// R(q) v of the rows' quaternions q0..q3 = q[0..3]
 DEM_INLINE wide3 turned(const wide q[4], wide3 v)
 {
-    wide a = q[2] * v.z - q[3] * v.y, b = q[3] * v.x - q[1] * v.z, c = q[1] * v.y - q[2] * v.x;
-    a = a + a;
-    b = b + b;
-    c = c + c;
-    return (wide3){v.x + q[0] * a + (q[2] * c - q[3] * b), v.y + q[0] * b + (q[3] * a - q[1] * c),
-                   v.z + q[0] * c + (q[1] * b - q[2] * a)};
+    wide3 u = {q[1], q[2], q[3]}, t = cross3(u, v);
+    t = (wide3){t.x + t.x, t.y + t.y, t.z + t.z};
+    v = along3(v, q[0], t);
+    return (wide3){wide_fma(u.y, t.z, wide_fnma(u.z, t.y, v.x)), wide_fma(u.z, t.x, wide_fnma(u.x, t.z, v.y)),
+                   wide_fma(u.x, t.y, wide_fnma(u.y, t.x, v.z))};
 }
 DEM_INLINE wide3 turned_back(const wide q[4], wide3 v)
 {
@@ -87,7 +86,7 @@ DEM_INLINE wide inverse_local_mass(const dem_features f, const dem_rows *rows, c
     if (f.offset) {
         wide3 own = turned_back(side->pose + 3, n);
         wide3 c = cross3((wide3){side->sphere[0], side->sphere[1], side->sphere[2]}, own);
-        sum = sum + (c.x * c.x * inertia[1] + c.y * c.y * inertia[2] + c.z * c.z * inertia[3]);
+        sum = wide_fma(c.x * c.x, inertia[1], wide_fma(c.y * c.y, inertia[2], wide_fma(c.z * c.z, inertia[3], sum)));
     }
     return sum;
 }

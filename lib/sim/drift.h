@@ -14,15 +14,15 @@ enum { TURNS_MOST = 1024 };
 // sin(x) / x and cos x by u = x^2, to the last bit for |x| < 0.4
 DEM_INLINE wide sine_over(wide u)
 {
-    wide s = wide_all(1.0 / 362880) + u * wide_all(-1.0 / 39916800);
-    s = wide_all(1.0 / 120) + u * (wide_all(-1.0 / 5040) + u * s);
-    return wide_all(1) + u * (wide_all(-1.0 / 6) + u * s);
+    wide s = wide_fma(u, wide_all(-1.0 / 39916800), wide_all(1.0 / 362880));
+    s = wide_fma(u, wide_fma(u, s, wide_all(-1.0 / 5040)), wide_all(1.0 / 120));
+    return wide_fma(u, wide_fma(u, s, wide_all(-1.0 / 6)), wide_all(1));
 }
 DEM_INLINE wide cosine(wide u)
 {
-    wide c = wide_all(1.0 / 40320) + u * wide_all(-1.0 / 3628800);
-    c = wide_all(1.0 / 24) + u * (wide_all(-1.0 / 720) + u * c);
-    return wide_all(1) + u * (wide_all(-0.5) + u * c);
+    wide c = wide_fma(u, wide_all(-1.0 / 3628800), wide_all(1.0 / 40320));
+    c = wide_fma(u, wide_fma(u, c, wide_all(-1.0 / 720)), wide_all(1.0 / 24));
+    return wide_fma(u, wide_fma(u, c, wide_all(-0.5)), wide_all(1));
 }
 
 typedef struct rotor {
@@ -34,19 +34,27 @@ typedef struct rotor {
 DEM_INLINE void turn_b(rotor *r, wide k)
 {
     wide half = k * r->body.y, u = half * half, s = half * sine_over(u), c = cosine(u);
-    wide q0 = r->q[0] * c - r->q[2] * s, q1 = r->q[1] * c - r->q[3] * s;
-    wide q2 = r->q[2] * c + r->q[0] * s, q3 = r->q[3] * c + r->q[1] * s;
-    wide cosine2 = c * c - s * s, sine2 = (s + s) * c, x = r->body.x, z = r->body.z;
-    *r = (rotor){{q0, q1, q2, q3}, {cosine2 * x - sine2 * z, r->body.y, cosine2 * z + sine2 * x}};
+    wide q0 = wide_fms(r->q[0], c, r->q[2] * s), q1 = wide_fms(r->q[1], c, r->q[3] * s);
+    wide q2 = wide_fma(r->q[2], c, r->q[0] * s), q3 = wide_fma(r->q[3], c, r->q[1] * s);
+    wide cosine2 = wide_fms(c, c, s * s), sine2 = (s + s) * c, x = r->body.x, z = r->body.z;
+    *r = (rotor){{q0, q1, q2, q3}, {wide_fms(cosine2, x, sine2 * z), r->body.y, wide_fma(cosine2, z, sine2 * x)}};
 }
 
 DEM_INLINE void turn_c(rotor *r, wide k)
 {
     wide half = k * r->body.z, u = half * half, s = half * sine_over(u), c = cosine(u);
-    wide q0 = r->q[0] * c - r->q[3] * s, q1 = r->q[1] * c + r->q[2] * s;
-    wide q2 = r->q[2] * c - r->q[1] * s, q3 = r->q[3] * c + r->q[0] * s;
-    wide cosine2 = c * c - s * s, sine2 = (s + s) * c, x = r->body.x, y = r->body.y;
-    *r = (rotor){{q0, q1, q2, q3}, {cosine2 * x + sine2 * y, cosine2 * y - sine2 * x, r->body.z}};
+    wide q0 = wide_fms(r->q[0], c, r->q[3] * s), q1 = wide_fma(r->q[1], c, r->q[2] * s);
+    wide q2 = wide_fms(r->q[2], c, r->q[1] * s), q3 = wide_fma(r->q[3], c, r->q[0] * s);
+    wide cosine2 = wide_fms(c, c, s * s), sine2 = (s + s) * c, x = r->body.x, y = r->body.y;
+    *r = (rotor){{q0, q1, q2, q3}, {wide_fma(cosine2, x, sine2 * y), wide_fms(cosine2, y, sine2 * x), r->body.z}};
+}
+
+DEM_INLINE void quat_product(const wide a[4], const wide b[4], wide out[4])
+{
+    out[0] = wide_fnma(a[3], b[3], wide_fnma(a[2], b[2], wide_fnma(a[1], b[1], a[0] * b[0])));
+    out[1] = wide_fnma(a[3], b[2], wide_fma(a[2], b[3], wide_fma(a[1], b[0], a[0] * b[1])));
+    out[2] = wide_fma(a[3], b[1], wide_fma(a[2], b[0], wide_fnma(a[1], b[3], a[0] * b[2])));
+    out[3] = wide_fma(a[3], b[0], wide_fnma(a[2], b[1], wide_fma(a[1], b[2], a[0] * b[3])));
 }
 
 // q exp(k body): a turn about L itself, which leaves `body` as it is
@@ -54,11 +62,8 @@ DEM_INLINE void turn_whole(rotor *r, wide k)
 {
     wide3 half = scale3(r->body, k);
     wide u = dot3(half, half), s = sine_over(u), e0 = cosine(u), e1 = s * half.x, e2 = s * half.y, e3 = s * half.z;
-    wide q0 = r->q[0], q1 = r->q[1], q2 = r->q[2], q3 = r->q[3];
-    r->q[0] = q0 * e0 - q1 * e1 - q2 * e2 - q3 * e3;
-    r->q[1] = q0 * e1 + q1 * e0 + q2 * e3 - q3 * e2;
-    r->q[2] = q0 * e2 - q1 * e3 + q2 * e0 + q3 * e1;
-    r->q[3] = q0 * e3 + q1 * e2 - q2 * e1 + q3 * e0;
+    wide e[4] = {e0, e1, e2, e3}, q[4] = {r->q[0], r->q[1], r->q[2], r->q[3]};
+    quat_product(q, e, r->q);
 }
 
 // one turn by `step`; `inverse` 1/I
@@ -95,10 +100,8 @@ DEM_INLINE void turn_in_space(const wide q[4], wide3 spin, wide k, wide out[4])
 {
     wide3 half = scale3(spin, k);
     wide u = dot3(half, half), s = sine_over(u), e0 = cosine(u), e1 = s * half.x, e2 = s * half.y, e3 = s * half.z;
-    out[0] = e0 * q[0] - e1 * q[1] - e2 * q[2] - e3 * q[3];
-    out[1] = e0 * q[1] + e1 * q[0] + e2 * q[3] - e3 * q[2];
-    out[2] = e0 * q[2] - e1 * q[3] + e2 * q[0] + e3 * q[1];
-    out[3] = e0 * q[3] + e1 * q[2] - e2 * q[1] + e3 * q[0];
+    wide e[4] = {e0, e1, e2, e3};
+    quat_product(e, q, out);
 }
 
 // spheres and other bodies with three equal moments: exact
@@ -247,7 +250,7 @@ DEM_INLINE void move_bodies(const dem_rows *rows, dem_motion_job *job, const boo
         momentum[2] = momentum[2] + weight.z;
         for (int k = 0; k < 3; k++) {
             motion[k] = momentum[k] * inertia[0];
-            pose[k] = pose[k] + step * motion[k];
+            pose[k] = wide_fma(step, motion[k], pose[k]);
         }
         wide3 spin = drift(pose + 3, (wide3){momentum[3], momentum[4], momentum[5]}, inertia, step);
         // to the first order: what a step adds to |q| - 1 is of the last bits
@@ -261,8 +264,9 @@ DEM_INLINE void move_bodies(const dem_rows *rows, dem_motion_job *job, const boo
         motion[6] = inertia[0];
         motion[7] = wide_all(0);
         wide turning = dot3(spin, spin) * (inertia[4] * inertia[4]);
-        wide speed2 = motion[0] * motion[0] + motion[1] * motion[1] + motion[2] * motion[2] + turning;
-        wide path = wide_load(job->path + i) + step * wide_sqrt(speed2 + speed2);
+        wide3 v = {motion[0], motion[1], motion[2]};
+        wide speed2 = dot3(v, v) + turning;
+        wide path = wide_fma(step, wide_sqrt(speed2 + speed2), wide_load(job->path + i));
         wide_store(job->path + i, path);
         unsigned bits = wide_bits(wide_not_le(path, wide_load(job->limit + i)));
         if (job->wall_limit)

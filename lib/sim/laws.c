@@ -7,6 +7,7 @@
 #include "base/status.h"
 #include "math/vec.h"
 #include "sim/restitution.h"
+#include "sim/scene.h"
 
 static const char *name_of(const dem_scene *scene, uint32_t material)
 {
@@ -111,27 +112,12 @@ static uint32_t row_equal_to(dem_laws *laws, const double row[LAW_SLOTS])
     return i;
 }
 
-// materials of bodies that meet each other or a wall
-static bool can_meet(const dem_scene *scene, uint32_t a, uint32_t b)
-{
-    bool body_a = false, body_b = false, wall_a = false, wall_b = false;
-    for (size_t i = 0; i < scene->shape_count; i++) {
-        body_a |= scene->shapes[i].material == a;
-        body_b |= scene->shapes[i].material == b;
-    }
-    for (size_t i = 0; i < scene->wall_count; i++) {
-        wall_a |= scene->walls[i].material == a;
-        wall_b |= scene->walls[i].material == b;
-    }
-    return (body_a && (body_b || wall_b)) || (body_b && wall_a);
-}
-
 static dem_status add_law(const dem_scene *scene, const dem_pair_law *law, dem_laws *laws, dem_error *error)
 {
     uint32_t a = law->materials[0], b = law->materials[1];
     if (a >= scene->material_count || b >= scene->material_count)
         return dem_fail(error, DEM_BAD_INPUT, "a contact names a material that is not there; correct it");
-    if (!can_meet(scene, a, b))
+    if (!dem_scene_can_meet(scene, a, b))
         return DEM_OK;
     double row[LAW_SLOTS] = {0};
     dem_features *needs = &laws->needs;
@@ -154,7 +140,7 @@ static dem_status check_complete(const dem_scene *scene, const dem_laws *laws, d
 {
     for (uint32_t a = 0; a < laws->material_count; a++)
         for (uint32_t b = 0; b <= a; b++)
-            if (can_meet(scene, a, b) && !laws_between(laws, a, b))
+            if (dem_scene_can_meet(scene, a, b) && !laws_between(laws, a, b))
                 return dem_fail(error, DEM_BAD_INPUT,
                                 "no contact law between \"%s\" and \"%s\"; add an entry to \"contacts\"",
                                 name_of(scene, b), name_of(scene, a));

@@ -24,7 +24,7 @@ static bool usable(void)
 }
 
 static void run(const dem_triangle *triangles, const uint32_t *ids, const dem_vec3 *centres, size_t count,
-                dem_spot *restrict spots)
+                dem_closest *restrict spots)
 {
 #ifdef __AVX2__
 #pragma omp simd

@@ -10,7 +10,7 @@ typedef struct dem_mesh_spots {
     bool (*usable)(void);
     /// spots[k] is the closest point of triangles[ids[k]] to centres[k].
     void (*run)(const dem_triangle *triangles, const uint32_t *ids, const dem_vec3 *centres, size_t count,
-                dem_spot *restrict spots);
+                dem_closest *restrict spots);
 } dem_mesh_spots;
 
 /// The best set this machine can run, or the named one (NULL: none such, or not usable here).

@@ -49,7 +49,7 @@ static bool search_ball(dem_world *w, size_t row, uint32_t sphere, uint32_t wall
     dem_vec3 centre = wall_from_space(about, ball.centre);
     dem_mesh_touch touch = {.a = (uint32_t)row, .sphere = sphere, .wall = wall, .first = (uint32_t)t->triangle_count};
     for (size_t i = 0; i < near->count; i++) {
-        dem_spot spot = triangle_closest(&about->mesh->triangles[near->items[i]], centre);
+        dem_closest spot = triangle_closest(&about->mesh->triangles[near->items[i]], centre);
         double gap = sqrt(spot.distance2) - ball.radius;
         if (gap < margin) {
             if (!add_triangle(t, near->items[i]))

@@ -147,7 +147,7 @@ bool dem_mesh_wall_near(const dem_mesh_wall *wall, dem_vec3 point, double reach,
 }
 
 void dem_mesh_wall_spots(const dem_mesh_wall *wall, const uint32_t *ids, const dem_vec3 *centres, size_t count,
-                         dem_spot *spots)
+                         dem_closest *spots)
 {
     wall->spots->run(wall->triangles, ids, centres, count, spots);
 }
@@ -164,7 +164,7 @@ static const double NOISE = 1e-10;
 
 typedef struct candidate {
     uint32_t triangle;
-    dem_spot spot;
+    dem_closest spot;
 } candidate;
 
 enum { KEPT = 128 }; // candidates within a ball that are kept; where there are more they are computed each time
@@ -175,7 +175,7 @@ typedef struct search {
     dem_vec3 centre;
     double radius;
     const uint32_t *ids;
-    const dem_spot *spots; // of the ids; NULL: not known
+    const dem_closest *spots; // of the ids; NULL: not known
     size_t count;
     const candidate *kept; // the candidates themselves, in place of all these; NULL: too many
 } search;
@@ -208,11 +208,11 @@ static bool has_corner(const uint32_t *corners, uint32_t vertex)
 }
 
 // do the triangle's corners include those of the edge or corner that a candidate lies on?
-static bool shares_place(const uint32_t *corners, const uint32_t *own, int64_t feature)
+static bool shares_place(const uint32_t *corners, const uint32_t *own, int64_t part)
 {
-    bool edge = feature < DEM_ON_VERTEX_A;
-    int64_t first = edge ? feature - DEM_ON_EDGE_AB : feature - DEM_ON_VERTEX_A;
-    return has_corner(corners, own[edge ? (first + 1) % 3 : first]);
+    bool edge = part < DEM_ON_VERTEX_A;
+    int64_t first = edge ? part - DEM_ON_EDGE_AB : part - DEM_ON_VERTEX_A;
+    return has_corner(corners, own[first]) && (!edge || has_corner(corners, own[(first + 1) % 3]));
 }
 
 // The same point of the surface, as far as the distances can tell? Beside an edge by less than 1e-8 of the distance,
@@ -233,10 +233,10 @@ static bool settle(const search *s, candidate *c)
 {
     const uint32_t *triangles = s->wall->mesh.triangles, *own = &triangles[3 * (size_t)c->triangle];
     candidate best = *c, room;
-    for (size_t k = 0; k < s->count && c->spot.feature != DEM_ON_FACE; k++) {
+    for (size_t k = 0; k < s->count && c->spot.part != DEM_ON_FACE; k++) {
         const candidate *other = candidate_at(s, k, &room);
         if (other->spot.distance2 < c->spot.distance2 &&
-            shares_place(&triangles[3 * (size_t)other->triangle], own, c->spot.feature))
+            shares_place(&triangles[3 * (size_t)other->triangle], own, c->spot.part))
             return false;
         double nearer = other->spot.aside2 - best.spot.aside2;
         if ((nearer < 0 || (nearer == 0 && is_before(other, &best))) && is_same_place(s, c, other))
@@ -278,7 +278,7 @@ static dem_mesh_contact contact_at(const search *s, const candidate *c)
     if (distance <= NOISE * t->length)
         normal = v3_dot(offset, t->normal) > 0 ? v3_scale(t->normal, -1) : t->normal;
     dem_vec3 point = v3_add(s->centre, offset);
-    return (dem_mesh_contact){c->triangle, (dem_feature)c->spot.feature, point, offset, normal, distance};
+    return (dem_mesh_contact){c->triangle, (dem_triangle_part)c->spot.part, point, offset, normal, distance};
 }
 
 // Is the plane beyond the radius? With room to spare: where rounding has turned the normal of a sliver, it is about its
@@ -306,7 +306,7 @@ static void keep(search *s, candidate *room)
     s->count = count;
 }
 
-int dem_mesh_wall_sift(const dem_mesh_wall *wall, const uint32_t *ids, const dem_spot *spots, size_t count,
+int dem_mesh_wall_sift(const dem_mesh_wall *wall, const uint32_t *ids, const dem_closest *spots, size_t count,
                        dem_vec3 centre, double radius, dem_mesh_contact *contacts, int most)
 {
     candidate room[KEPT], at = {.spot.distance2 = -1};

@@ -4,16 +4,16 @@
 /// frame. Candidates are gathered by Embree in 32-bit floats, everything that is handed out is computed in double and
 /// has the same bits on every machine.
 ///
-/// What a ball touches is found as by Santasusana, Irazabal, Onate & Carbonell (2016, H2), in two parts. By type: a
-/// closest point on an edge or corner counts only if no triangle that shares it has a nearer one, for only then the
-/// distance to the surface is least there; a face so beats its own edges and corners, an edge its corners, and the
-/// folds of a concave surface farther off do not count. By distance: what is left is taken from the nearest on, and a
-/// point on or behind the tangent plane of one that was taken is passed over; what several triangles share so counts
-/// once, and coplanar and convex neighbours that share no vertices (and the back of a plate) add nothing. In a concave
-/// corner every face counts. Both sides of a triangle are solid.
+/// What a ball touches is found as by Santasusana et al. (2016, H2), in two steps. By type: a closest point on an edge
+/// or corner counts only if no triangle that shares it has a nearer one, for only then the distance to the surface is
+/// least there; a face so beats its own edges and corners, an edge its corners, and the folds of a concave surface
+/// farther off do not count. By distance: what is left is taken from the nearest on, and a point on or behind the
+/// tangent plane of one that was taken is passed over; what several triangles share so counts once, and coplanar and
+/// convex neighbours that share no corners, and the back of a plate, add nothing. In a concave corner every face
+/// counts. Both sides of a triangle are solid.
 ///
 /// Known limit: of faces that fold inwards by less than 0.08 degrees only the nearer counts, and where the fold is
-/// sharper but less than acos(1 - overlap / radius), the second face sets in with its full force.
+/// sharper but less than acos(1 - overlap / radius), the second face sets in with a jump.
 #ifndef DEM_SIM_MESH_WALL_H
 #define DEM_SIM_MESH_WALL_H
 
@@ -45,12 +45,12 @@ bool dem_mesh_wall_near(const dem_mesh_wall *wall, dem_vec3 point, double reach,
 
 /// The closest point of triangle ids[k] to centres[k] for `count` pairs at once; the bits of triangle_closest.
 void dem_mesh_wall_spots(const dem_mesh_wall *wall, const uint32_t *ids, const dem_vec3 *centres, size_t count,
-                         dem_spot *spots);
+                         dem_closest *spots);
 
 /// Where a ball touches a wall.
 typedef struct dem_mesh_contact {
     uint32_t triangle;
-    dem_feature feature;
+    dem_triangle_part part;
     dem_vec3 point;  ///< closest point [m]
     dem_vec3 offset; ///< from the centre to it [m]
     dem_vec3 normal; ///< unit, from it towards the centre; with the centre on the triangle: the triangle's normal
@@ -65,7 +65,7 @@ int dem_mesh_wall_contacts(const dem_mesh_wall *wall, const uint32_t *ids, size_
                            dem_mesh_contact *contacts, int most);
 
 /// The same where the closest points are known: spots[k] is that of ids[k] to `centre`. NULL: not known.
-int dem_mesh_wall_sift(const dem_mesh_wall *wall, const uint32_t *ids, const dem_spot *spots, size_t count,
+int dem_mesh_wall_sift(const dem_mesh_wall *wall, const uint32_t *ids, const dem_closest *spots, size_t count,
                        dem_vec3 centre, double radius, dem_mesh_contact *contacts, int most);
 
 /// Which contact of the last step of the same ball and wall each contact goes on with: from[k] is an index into `last`,

@@ -29,7 +29,7 @@ static uint64_t hash_bytes(uint64_t hash, const void *bytes, size_t size)
 
 /// What must be alike in the saved world and the one that takes it up, then what is taken.
 typedef struct block_head {
-    uint64_t layout, bodies, shapes, walls, laws, segments;
+    uint64_t layout, constants, bodies, shapes, walls, laws, segments;
     dem_features features;
     unsigned char unused[8 - sizeof(dem_features) % 8];
     uint64_t steps, epoch_steps, exact_then;
@@ -38,11 +38,39 @@ typedef struct block_head {
     uint64_t pairs;
 } block_head;
 
+// what the scene fixes: shapes, laws, walls, loads
+static uint64_t hash_constants(const dem_world *w)
+{
+    uint64_t h = hash_bytes(HASH_START, w->templates.spheres, w->templates.sphere_count * sizeof *w->templates.spheres);
+    for (size_t i = 0; i < w->templates.count; i++) {
+        const dem_template *t = &w->templates.items[i];
+        double numbers[5] = {t->mass, t->inertia[0], t->inertia[1], t->inertia[2], t->material};
+        h = hash_bytes(h, numbers, sizeof numbers);
+    }
+    h = hash_bytes(h, w->laws.rows, w->laws.count * LAW_SLOTS * sizeof(double));
+    h = hash_bytes(h, w->laws.table, w->laws.material_count * w->laws.material_count * sizeof *w->laws.table);
+    for (size_t i = 0; i < w->walls.count; i++) {
+        const dem_wall *wall = &w->walls.items[i];
+        dem_vec3 numbers[6] = {wall->point, wall->normal, wall->velocity, wall->through, wall->spin,
+                               {wall->radius, wall->form, wall->material}};
+        h = hash_bytes(h, numbers, sizeof numbers);
+        if (wall->mesh)
+            h = hash_bytes(h, wall->mesh->mesh.vertices, wall->mesh->mesh.vertex_count * sizeof(dem_vec3));
+    }
+    dem_vec3 loads[4] = {w->gravity, w->domain.low, w->domain.high,
+                         {w->damping.local, w->damping.viscous, w->damping.local_frame + 2 * w->damping.exclude_gravity}};
+    h = hash_bytes(h, loads, sizeof loads);
+    double numbers[5] = {w->time_def.step, w->multiple, w->domain.periodic[0], w->domain.periodic[1],
+                         w->domain.periodic[2]};
+    return hash_bytes(h, numbers, sizeof numbers);
+}
+
 static block_head head_of(const dem_world *w)
 {
     block_head h;
     memset(&h, 0, sizeof h);
     h.layout = LAYOUT;
+    h.constants = hash_constants(w);
     h.bodies = w->bodies.count;
     h.shapes = w->shape_count;
     h.walls = w->walls.count;
@@ -279,7 +307,7 @@ dem_status dem_world_restore(dem_world *w, const void *bytes, size_t size, dem_e
     memcpy(&head, bytes, sizeof head);
     if (head.layout != LAYOUT)
         return refuse(error, "is of another version; run it with the program that wrote it");
-    bool same = head.bodies == own.bodies && head.shapes == own.shapes && head.walls == own.walls &&
+    bool same = head.constants == own.constants && head.bodies == own.bodies && head.shapes == own.shapes && head.walls == own.walls &&
                 head.laws == own.laws && head.segments == own.segments &&
                 memcmp(&head.features, &own.features, sizeof own.features) == 0;
     if (!same)

@@ -1,5 +1,6 @@
 #!/usr/bin/python3
-"""Writes small valid meshes to start the fuzzers from: make_seeds.py FOLDER -> FOLDER/{stl,obj,ply,off,sniff}/"""
+"""Writes small valid files to start the fuzzers from: make_seeds.py FOLDER -> FOLDER/{stl,obj,ply,off,sniff,checkpoint}/"""
+import hashlib
 import os
 import struct
 import sys
@@ -47,6 +48,9 @@ seeds = {
 }
 seeds = {name: [s if isinstance(s, bytes) else s.encode() for s in some] for name, some in seeds.items()}
 seeds['sniff'] = [b'd' + s for some in seeds.values() for s in some]
+header = b'{"title": "t", "scene": "%s", "time": 0.5, "step": 7, "frames": 1, "rows": 2, "byte_order": "little"}' % (b'0f' * 32)
+whole = b'dem-checkpoint/1\n%020d %020d\n%sstate' % (len(header), 5, header)
+seeds['checkpoint'] = [b'1' + header, b'0' + whole + hashlib.sha256(whole).hexdigest().encode() + b'\n']
 for name, some in seeds.items():
     os.makedirs(os.path.join(sys.argv[1], name), exist_ok=True)
     for i, seed in enumerate(some):

@@ -24,7 +24,11 @@ typedef struct dem_fidelity {
     size_t pieces;                ///< connected pieces of the union
 } dem_fidelity;
 
-typedef enum dem_mass_source { DEM_MASS_FROM_MESH, DEM_MASS_FROM_UNION } dem_mass_source;
+typedef enum dem_mass_source {
+    DEM_MASS_FROM_MESH,
+    DEM_MASS_FROM_UNION,
+    DEM_MASS_GIVEN,  ///< told by whoever made the clump
+} dem_mass_source;
 
 /// What a clump is made from; every pointer is copied. Lengths in metres; `balls` and `surface` in the
 /// clump's own frame: centre of mass at 0, principal axes I1 <= I2 <= I3. A text that is NULL comes back as "",

@@ -12,12 +12,12 @@ typedef struct wide3 {
 
 DEM_INLINE wide dot3(wide3 a, wide3 b)
 {
-    return a.x * b.x + a.y * b.y + a.z * b.z;
+    return wide_fma(a.z, b.z, wide_fma(a.y, b.y, a.x * b.x));
 }
 /// a + s b
 DEM_INLINE wide3 along3(wide3 a, wide s, wide3 b)
 {
-    return (wide3){a.x + s * b.x, a.y + s * b.y, a.z + s * b.z};
+    return (wide3){wide_fma(s, b.x, a.x), wide_fma(s, b.y, a.y), wide_fma(s, b.z, a.z)};
 }
 DEM_INLINE wide3 scale3(wide3 a, wide s)
 {
@@ -25,7 +25,7 @@ DEM_INLINE wide3 scale3(wide3 a, wide s)
 }
 DEM_INLINE wide3 cross3(wide3 a, wide3 b)
 {
-    return (wide3){a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
+    return (wide3){wide_fms(a.y, b.z, a.z * b.y), wide_fms(a.z, b.x, a.x * b.z), wide_fms(a.x, b.y, a.y * b.x)};
 }
 DEM_INLINE wide3 select3(wide_mask m, wide3 a, wide3 b)
 {

@@ -1,0 +1,120 @@
+#include "out/pvd.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+#include "base/file.h"
+#include "base/memory.h"
+
+static const char HEAD[] = "<?xml version=\"1.0\"?>\n<VTKFile type=\"Collection\" version=\"1.0\">\n<Collection>\n";
+static const char TAIL[] = "</Collection>\n</VTKFile>\n";
+static const char SET[] = "<DataSet timestep=\"", PART[] = "\" part=\"", NAMED[] = "\" file=\"", CLOSE[] = "\"/>\n";
+
+// ---- reading
+
+// steps over a text; false: something else stands there
+static bool skip_text(const char **at, const char *text)
+{
+    size_t length = strlen(text);
+    if (strncmp(*at, text, length) != 0)
+        return false;
+    *at += length;
+    return true;
+}
+
+// one line of the index: time, part, file
+static bool read_line(const char **at, const char *end, double *time, long *part, char *file, size_t size)
+{
+    if (!skip_text(at, SET) || !(*at = dem_parse_double(*at, end, time)) || !skip_text(at, PART) ||
+        !(*at = dem_parse_long(*at, end, part)) || !skip_text(at, NAMED))
+        return false;
+    size_t length = strcspn(*at, "\"<>&\n");
+    if (length == 0 || length >= size)
+        return false;
+    memcpy(file, *at, length);
+    file[length] = 0;
+    *at += length;
+    return skip_text(at, CLOSE) && *part >= 0 && *part < DEM_PVD_PARTS;
+}
+
+static bool append(dem_pvd *index, const dem_pvd_entry *entry)
+{
+    if (!dem_grow(&index->entries, &index->capacity, index->count, sizeof *index->entries))
+        return false;
+    index->entries[index->count++] = *entry;
+    return true;
+}
+
+static dem_status read_entries(dem_pvd *index, const char *at, const char *end, double resume, dem_error *error)
+{
+    bool ours = skip_text(&at, HEAD);
+    while (ours && !skip_text(&at, TAIL)) {
+        dem_pvd_entry entry = {0};
+        long part;
+        char file[sizeof entry.files[0]];
+        ours = read_line(&at, end, &entry.time, &part, file, sizeof file);
+        if (!ours || entry.time > resume)
+            continue;
+        bool same = index->count > 0 && index->entries[index->count - 1].time == entry.time;
+        if (!same && !append(index, &entry))
+            return dem_fail_memory(error);
+        memcpy(index->entries[index->count - 1].files[part], file, sizeof file);
+    }
+    if (!ours || at != end)
+        return dem_fail_at(error, DEM_BAD_INPUT, index->path, 0,
+                           "is not as this program writes it; remove it or resume with another folder (-o)");
+    return DEM_OK;
+}
+
+dem_status dem_pvd_open(const char *folder, const char *name, double resume, dem_pvd *index, dem_error *error)
+{
+    *index = (dem_pvd){.path = dem_path_join(folder, "%s", name)};
+    if (!index->path)
+        return dem_fail_memory(error);
+    if (isnan(resume) || access(index->path, F_OK) != 0)
+        return DEM_OK;
+    dem_buffer file;
+    dem_status status = dem_file_read(index->path, &file, error);
+    if (status == DEM_OK)
+        status = read_entries(index, file.data, file.data + file.size, resume, error);
+    dem_buffer_release(&file);
+    if (status != DEM_OK)
+        dem_pvd_release(index);
+    return status;
+}
+
+// ---- writing
+
+static dem_status write_index(const dem_pvd *index, dem_error *error)
+{
+    dem_buffer out = {0};
+    dem_buffer_text(&out, HEAD);
+    for (size_t i = 0; i < index->count; i++)
+        for (int part = 0; part < DEM_PVD_PARTS; part++)
+            if (index->entries[i].files[part][0]) {
+                dem_buffer_text(&out, SET);
+                dem_buffer_shortest(&out, index->entries[i].time);
+                dem_buffer_print(&out, "%s%d%s%s%s", PART, part, NAMED, index->entries[i].files[part], CLOSE);
+            }
+    dem_buffer_text(&out, TAIL);
+    return dem_file_write_buffer(index->path, &out, error);
+}
+
+dem_status dem_pvd_add(dem_pvd *index, double time, const char *file, const char *other, dem_error *error)
+{
+    dem_pvd_entry entry = {.time = time};
+    const char *files[DEM_PVD_PARTS] = {file, other};
+    for (int part = 0; part < DEM_PVD_PARTS; part++)
+        snprintf(entry.files[part], sizeof entry.files[part], "%s", files[part] ? files[part] : "");
+    return append(index, &entry) ? write_index(index, error) : dem_fail_memory(error);
+}
+
+void dem_pvd_release(dem_pvd *index)
+{
+    free(index->path);
+    free(index->entries);
+    *index = (dem_pvd){0};
+}

@@ -1,0 +1,205 @@
+#include "out/series.h"
+
+#include <errno.h>
+#include <fcntl.h>
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+#include "base/file.h"
+#include "base/memory.h"
+#include "out/names.h"
+
+struct dem_series {
+    char *path;
+    int file;
+    size_t size;  // bytes of whole rows
+    size_t rows, wall_count;
+};
+
+// ---- columns
+
+static const struct {
+    const char *name;
+    size_t at;
+    enum { NUMBER, STEP, COUNT } kind;
+} columns[] = {
+#define COLUMN(kind, name, field)                                                                                      \
+    {                                                                                                                  \
+        name, offsetof(dem_figures, field), kind                                                                       \
+    }
+    COLUMN(NUMBER, "time_s", time),
+    COLUMN(STEP, "step", step),
+    COLUMN(NUMBER, "kinetic_J", energy.kinetic),
+    COLUMN(NUMBER, "rotational_J", energy.rotational),
+    COLUMN(NUMBER, "potential_J", energy.potential),
+    COLUMN(NUMBER, "elastic_J", energy.elastic),
+    COLUMN(NUMBER, "friction_J", energy.friction),
+    COLUMN(NUMBER, "viscous_J", energy.viscous),
+    COLUMN(NUMBER, "local_J", energy.local),
+    COLUMN(NUMBER, "drag_J", energy.drag),
+    COLUMN(NUMBER, "work_J", energy.work),
+    COLUMN(NUMBER, "energy_error", energy.error),
+    COLUMN(COUNT, "contacts", contacts),
+    COLUMN(COUNT, "wall_contacts", wall_contacts),
+    COLUMN(NUMBER, "coordination", coordination),
+    COLUMN(NUMBER, "overlap_ratio", overlap_ratio),
+    COLUMN(NUMBER, "centre_x_m", centre.x),
+    COLUMN(NUMBER, "centre_y_m", centre.y),
+    COLUMN(NUMBER, "centre_z_m", centre.z),
+    COLUMN(NUMBER, "highest_m", highest),
+#undef COLUMN
+};
+enum { COLUMNS = sizeof columns / sizeof *columns };
+
+static dem_status put_head(dem_buffer *out, const dem_wall_def *walls, size_t count, dem_error *error)
+{
+    static const char *const parts[] = {"fx_N", "fy_N", "fz_N", "mx_Nm", "my_Nm", "mz_Nm"};
+    dem_plain_name *names = dem_alloc(count, sizeof *names);
+    if (!names)
+        return dem_fail_memory(error);
+    for (size_t i = 0; i < COLUMNS; i++)
+        dem_buffer_print(out, "%s%s", i ? "," : "", columns[i].name);
+    for (size_t i = 0; i < count; i++) {
+        names[i] = dem_name_plain(walls[i].name, "wall", names, i);
+        for (int k = 0; k < 6; k++)
+            dem_buffer_print(out, ",%s_%s", names[i].text, parts[k]);
+    }
+    dem_buffer_text(out, "\n");
+    free(names);
+    return out->failed ? dem_fail_memory(error) : DEM_OK;
+}
+
+static void put_row(dem_buffer *out, const dem_figures *figures, const dem_wall_view *walls, size_t count)
+{
+    for (size_t i = 0; i < COLUMNS; i++) {
+        const char *value = (const char *)figures + columns[i].at;
+        if (i)
+            dem_buffer_text(out, ",");
+        if (columns[i].kind == NUMBER)
+            dem_buffer_shortest(out, *(const double *)value);
+        else if (columns[i].kind == STEP)
+            dem_buffer_print(out, "%llu", (unsigned long long)*(const uint64_t *)value);
+        else
+            dem_buffer_print(out, "%zu", *(const size_t *)value);
+    }
+    for (size_t i = 0; i < count; i++) {
+        const dem_vec3 f = walls[i].force, m = walls[i].moment;
+        const double parts[6] = {f.x, f.y, f.z, m.x, m.y, m.z};
+        for (int k = 0; k < 6; k++) {
+            dem_buffer_text(out, ",");
+            dem_buffer_shortest(out, parts[k]);
+        }
+    }
+    dem_buffer_text(out, "\n");
+}
+
+// ---- beginning
+
+// keeps the whole rows up to the time to resume from
+static dem_status keep_rows(dem_series *s, const dem_buffer *file, const dem_buffer *head, double resume,
+                            dem_error *error)
+{
+    if (file->size < head->size || memcmp(file->data, head->data, head->size) != 0)
+        return dem_fail_at(error, DEM_BAD_INPUT, s->path, 1,
+                           "has other columns than this scene's; resume with another folder (-o)");
+    const char *row = file->data + head->size, *end = file->data + file->size, *next;
+    for (; (next = memchr(row, '\n', (size_t)(end - row))); row = next + 1) {
+        double time;
+        if (!dem_parse_double(row, next, &time) || !(time <= resume))
+            break;
+        s->rows++;
+    }
+    s->size = (size_t)(row - file->data);
+    return DEM_OK;
+}
+
+static dem_status cannot_write(const dem_series *s, dem_error *error)
+{
+    return dem_fail_at(error, DEM_CANNOT_WRITE, s->path, 0, "cannot write: %s; choose another place with -o",
+                       strerror(errno));
+}
+
+static dem_status begin(dem_series *s, const dem_buffer *head, double resume, dem_error *error)
+{
+    if (isnan(resume) || access(s->path, F_OK) != 0) {
+        DEM_TRY(dem_file_write(s->path, head->data, head->size, error));
+        s->size = head->size;
+    } else {
+        dem_buffer file;
+        dem_status status = dem_file_read(s->path, &file, error);
+        if (status == DEM_OK)
+            status = keep_rows(s, &file, head, resume, error);
+        dem_buffer_release(&file);
+        DEM_TRY(status);
+    }
+    s->file = open(s->path, O_WRONLY | O_APPEND | O_CLOEXEC);
+    if (s->file < 0 || ftruncate(s->file, (off_t)s->size) != 0)
+        return cannot_write(s, error);
+    return DEM_OK;
+}
+
+dem_status dem_series_open(const char *directory, const dem_wall_def *walls, size_t wall_count, double resume,
+                           dem_series **series, dem_error *error)
+{
+    dem_buffer head = {0};
+    dem_series *s = *series = dem_alloc_zero(1, sizeof *s);
+    if (!s)
+        return dem_fail_memory(error);
+    *s = (dem_series){.path = dem_path_join(directory, "series.csv"), .file = -1, .wall_count = wall_count};
+    dem_status status = s->path ? dem_folder_create(directory, error) : dem_fail_memory(error);
+    if (status == DEM_OK)
+        status = put_head(&head, walls, wall_count, error);
+    if (status == DEM_OK)
+        status = begin(s, &head, resume, error);
+    dem_buffer_release(&head);
+    if (status != DEM_OK) {
+        dem_series_close(s);
+        *series = NULL;
+    }
+    return status;
+}
+
+// ---- going on
+
+static dem_status append(dem_series *s, const dem_buffer *row, dem_error *error)
+{
+    for (size_t done = 0; done < row->size;) {
+        ssize_t put = write(s->file, row->data + done, row->size - done);
+        if (put < 0 && errno == EINTR)
+            continue;
+        if (put <= 0) {
+            dem_status status = cannot_write(s, error);
+            return ftruncate(s->file, (off_t)s->size) == 0 ? status : cannot_write(s, error);
+        }
+        done += (size_t)put;
+    }
+    s->size += row->size;
+    s->rows++;
+    return DEM_OK;
+}
+
+dem_status dem_series_write(dem_series *s, const dem_figures *figures, const dem_wall_view *walls, dem_error *error)
+{
+    dem_buffer row = {0};
+    put_row(&row, figures, walls, s->wall_count);
+    dem_status status = row.failed ? dem_fail_memory(error) : append(s, &row, error);
+    dem_buffer_release(&row);
+    return status;
+}
+
+size_t dem_series_rows(const dem_series *s)
+{
+    return s->rows;
+}
+
+void dem_series_close(dem_series *s)
+{
+    if (!s)
+        return;
+    if (s->file >= 0)
+        close(s->file);
+    free(s->path);
+    free(s);
+}

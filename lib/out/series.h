@@ -1,0 +1,28 @@
+/// The history of a run as a table: DIR/series.csv, a row per time, units in the names of the columns, every number
+/// as short as is read back without loss.
+#ifndef DEM_OUT_SERIES_H
+#define DEM_OUT_SERIES_H
+
+#include "base/status.h"
+#include "dem/scene.h"
+#include "dem/world.h"
+
+typedef struct dem_series dem_series;
+
+/// Begins the table; with a time in `resume` [s] (NAN: a new run) it goes on with the one that is there, from which the
+/// rows behind that time are cut. A row that is due at the time of a checkpoint must be written before it. Makes the
+/// folder. Errors: DEM_CANNOT_WRITE, DEM_NO_MEMORY; DEM_BAD_INPUT for a table to go on with that has other columns.
+dem_status dem_series_open(const char *directory, const dem_wall_def *walls, size_t wall_count, double resume,
+                           dem_series **series, dem_error *error);
+
+/// Appends a row, which is in the file when this returns; a row that cannot be written leaves no part of itself.
+/// `walls` [wall_count]. Errors: DEM_CANNOT_WRITE, DEM_NO_MEMORY.
+dem_status dem_series_write(dem_series *series, const dem_figures *figures, const dem_wall_view *walls,
+                            dem_error *error);
+
+/// How many there are, with those that stayed.
+size_t dem_series_rows(const dem_series *series);
+
+void dem_series_close(dem_series *series);
+
+#endif

@@ -1,0 +1,165 @@
+#include "out/wall_mesh.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/memory.h"
+#include "math/quat.h"
+
+enum {
+    CORNERS = 10,   // of a square cut by six planes
+    SEGMENTS = 64,  // of a cylinder
+};
+
+static const double MARGIN = 0.05;     // about what is in the box, over its diagonal
+static const double TOLERANCE = 1e-9;  // a plane on the side of the box is in it, over its diagonal
+
+bool dem_wall_moves(const dem_wall_def *wall)
+{
+    return v3_norm2(wall->velocity) > 0 || v3_norm2(wall->spin) > 0;
+}
+
+static dem_vec3 placed(const dem_wall_view *pose, dem_vec3 x)
+{
+    return pose ? v3_add(pose->position, quat_rotate(pose->orientation, x)) : x;
+}
+
+static dem_vec3 turned(const dem_wall_view *pose, dem_vec3 v)
+{
+    return pose ? quat_rotate(pose->orientation, v) : v;
+}
+
+// ---- where they are cut
+
+static dem_box with_wall(dem_box box, const dem_wall_def *wall, const dem_wall_view *pose)
+{
+    if (wall->kind == DEM_WALL_MESH) {
+        for (size_t i = 0; i < wall->mesh.vertex_count; i++)
+            box = box_with(box, placed(pose, wall->mesh.vertices[i]));
+        return box;
+    }
+    dem_vec3 point = placed(pose, wall->point);
+    box = box_with(box, point);
+    if (wall->kind == DEM_WALL_CYLINDER) {
+        dem_vec3 a = turned(pose, wall->normal);
+        dem_vec3 reach = v3_scale(
+            v3(sqrt(fmax(0, 1 - a.x * a.x)), sqrt(fmax(0, 1 - a.y * a.y)), sqrt(fmax(0, 1 - a.z * a.z))), wall->radius);
+        box = box_with(box_with(box, v3_sub(point, reach)), v3_add(point, reach));
+    }
+    return box;
+}
+
+dem_box dem_walls_box(const dem_domain_def *domain, dem_box bodies, const dem_wall_def *walls,
+                      const dem_wall_view *poses, size_t count)
+{
+    dem_box box = bodies;
+    for (size_t i = 0; i < count; i++)
+        box = with_wall(box, &walls[i], poses ? &poses[i] : NULL);
+    if (!(box.low.x <= box.high.x))
+        box = (dem_box){v3(0, 0, 0), v3(0, 0, 0)};
+    double margin = MARGIN * box_diagonal(box);
+    margin = margin > 0 ? margin : 1;  // nothing but a point: any size will do
+    for (int k = 0; k < 3; k++) {
+        double low = v3_get(domain->low, k), high = v3_get(domain->high, k);
+        v3_set(&box.low, k, isfinite(low) ? low : v3_get(box.low, k) - margin);
+        v3_set(&box.high, k, isfinite(high) ? high : v3_get(box.high, k) + margin);
+    }
+    return box;
+}
+
+// ---- their triangles
+
+static dem_status make_room(dem_mesh *mesh, size_t vertices, size_t triangles, dem_error *error)
+{
+    *mesh = (dem_mesh){.vertices = dem_alloc(vertices, sizeof *mesh->vertices),
+                       .triangles = dem_alloc(3 * triangles, sizeof *mesh->triangles)};
+    if (mesh->vertices && mesh->triangles)
+        return DEM_OK;
+    dem_mesh_free(mesh);
+    return dem_fail_memory(error);
+}
+
+static void put_triangle(dem_mesh *mesh, size_t a, size_t b, size_t c)
+{
+    uint32_t *t = &mesh->triangles[3 * mesh->triangle_count++];
+    t[0] = (uint32_t)a, t[1] = (uint32_t)b, t[2] = (uint32_t)c;
+}
+
+// keeps what has side * x[axis] <= limit of a convex polygon; returns the corners left
+static size_t cut(dem_vec3 *polygon, size_t corners, int axis, double side, double limit)
+{
+    dem_vec3 rest[CORNERS];
+    size_t left = 0;
+    for (size_t i = 0; i < corners; i++) {
+        dem_vec3 a = polygon[i], b = polygon[(i + 1) % corners];
+        double over_a = side * v3_get(a, axis) - limit, over_b = side * v3_get(b, axis) - limit;
+        if (over_a <= 0)
+            rest[left++] = a;
+        if ((over_a <= 0) != (over_b <= 0))
+            rest[left++] = v3_along(a, over_a / (over_a - over_b), v3_sub(b, a));
+    }
+    memcpy(polygon, rest, left * sizeof *rest);
+    return left;
+}
+
+static dem_status plane_mesh(dem_vec3 point, dem_vec3 normal, dem_box box, dem_mesh *mesh, dem_error *error)
+{
+    DEM_TRY(make_room(mesh, CORNERS, CORNERS, error));
+    double size = box_diagonal(box), spare = TOLERANCE * size;
+    dem_vec3 middle = v3_scale(v3_add(box.low, box.high), 0.5);
+    middle = v3_along(middle, v3_dot(v3_sub(point, middle), normal), normal);
+    dem_vec3 u = v3_scale(v3_normal_to(normal), size), v = v3_cross(normal, u), *corners = mesh->vertices;
+    for (int k = 0; k < 4; k++)
+        corners[k] = v3_along(v3_along(middle, k == 0 || k == 3 ? -1 : 1, u), k < 2 ? -1 : 1, v);
+    size_t count = 4;
+    for (int axis = 0; axis < 3; axis++) {
+        count = cut(corners, count, axis, 1, v3_get(box.high, axis) + spare);
+        count = cut(corners, count, axis, -1, spare - v3_get(box.low, axis));
+    }
+    mesh->vertex_count = count > 2 ? count : 0;
+    for (size_t k = 2; k < count; k++)
+        put_triangle(mesh, 0, k - 1, k);
+    return DEM_OK;
+}
+
+static dem_status cylinder_mesh(const dem_wall_def *wall, dem_vec3 point, dem_vec3 axis, dem_box box, dem_mesh *mesh,
+                                dem_error *error)
+{
+    DEM_TRY(make_room(mesh, 2 * SEGMENTS, 2 * SEGMENTS, error));
+    double ends[2] = {INFINITY, -INFINITY};
+    for (int k = 0; k < 8; k++) {
+        dem_vec3 corner =
+            v3(k & 1 ? box.high.x : box.low.x, k & 2 ? box.high.y : box.low.y, k & 4 ? box.high.z : box.low.z);
+        double along = v3_dot(v3_sub(corner, point), axis);
+        ends[0] = fmin(ends[0], along);
+        ends[1] = fmax(ends[1], along);
+    }
+    dem_vec3 u = v3_normal_to(axis), v = v3_cross(axis, u);
+    for (int i = 0; i < SEGMENTS; i++) {
+        double angle = 2 * DEM_PI * i / SEGMENTS, x = wall->radius * cos(angle), y = wall->radius * sin(angle);
+        dem_vec3 rim = v3_along(v3_along(point, x, u), y, v);
+        for (int end = 0; end < 2; end++)
+            mesh->vertices[mesh->vertex_count++] = v3_along(rim, ends[end], axis);
+    }
+    for (size_t i = 0; i < SEGMENTS; i++) {
+        size_t low = 2 * i, next = 2 * ((i + 1) % SEGMENTS), turn = wall->outside ? 1 : 0;
+        put_triangle(mesh, low, turn ? next : next + 1, turn ? next + 1 : next);
+        put_triangle(mesh, low, turn ? next + 1 : low + 1, turn ? low + 1 : next + 1);
+    }
+    return DEM_OK;
+}
+
+dem_status dem_wall_mesh(const dem_wall_def *wall, const dem_wall_view *pose, dem_box box, dem_mesh *mesh,
+                         dem_error *error)
+{
+    if (wall->kind == DEM_WALL_MESH) {
+        DEM_TRY(dem_mesh_copy(&wall->mesh, mesh, error));
+        for (size_t i = 0; i < mesh->vertex_count; i++)
+            mesh->vertices[i] = placed(pose, mesh->vertices[i]);
+        return DEM_OK;
+    }
+    dem_vec3 point = placed(pose, wall->point), normal = v3_unit(turned(pose, wall->normal));
+    if (wall->kind == DEM_WALL_PLANE)
+        return plane_mesh(point, normal, box, mesh, error);
+    return cylinder_mesh(wall, point, normal, box, mesh, error);
+}

@@ -1,0 +1,131 @@
+// "bodies": single ones, files of them, and fills.
+#include <math.h>
+
+#include "base/file.h"
+#include "sim/bodies_csv.h"
+#include "sim/scene_reader.h"
+
+// one entry as it stands in the list
+typedef struct entry_text {
+    dem_body_def body;
+    const char *file;
+    double size;
+} entry_text;
+
+static dem_status read_orientation(dem_scene_reader *r, const dem_scene_value *v, const dem_field *field, void *into)
+{
+    dem_quat *q = into;
+    double *parts[4] = {&q->w, &q->x, &q->y, &q->z};
+    DEM_TRY(dem_read_array(r, v, 4, "a quaternion [w, x, y, z]"));
+    for (size_t i = 0; i < 4; i++) {
+        dem_scene_value item = dem_scene_item(v, i);
+        DEM_TRY(dem_read_quantity(r, &item, DEM_DIMENSION_NONE, field->range, parts[i]));
+    }
+    if (!dem_quat_normalise(q))
+        return dem_scene_refuse(r, v, "[1, 0, 0, 0] means not turned", "has no length");
+    return DEM_OK;
+}
+
+enum {
+    BODY_FILE,
+    BODY_FILL,
+    BODY_SHAPE,
+    BODY_POSITION,
+    BODY_ORIENTATION,
+    BODY_VELOCITY,
+    BODY_SPIN,
+    BODY_SIZE,
+    BODY_SCALE,
+    BODY_FIXED,
+    BODY_LOCK,
+    BODY_PRESCRIBED,
+};
+static const dem_field body_table[] = {
+    [BODY_FILE] = {"file", dem_field_path, .at = offsetof(entry_text, file)},
+    [BODY_FILL] = {"fill", dem_section_fill, .fields = &dem_fill_fields},
+    [BODY_SHAPE] = {"shape", dem_field_shape, .at = offsetof(entry_text, body.shape)},
+    [BODY_POSITION] = {"position", dem_field_vector, .at = offsetof(entry_text, body.position),
+                       .dimension = DEM_DIMENSION_LENGTH},
+    [BODY_ORIENTATION] = {"orientation", read_orientation, .at = offsetof(entry_text, body.orientation)},
+    [BODY_VELOCITY] = {"velocity", dem_field_vector, .at = offsetof(entry_text, body.velocity),
+                       .dimension = DEM_DIMENSION_VELOCITY},
+    [BODY_SPIN] = {"spin", dem_field_vector, .at = offsetof(entry_text, body.spin),
+                   .dimension = DEM_DIMENSION_ANGULAR_VELOCITY},
+    [BODY_SIZE] = {"size", dem_field_quantity, .at = offsetof(entry_text, size), .dimension = DEM_DIMENSION_LENGTH,
+                   .range = DEM_RANGE_POSITIVE},
+    [BODY_SCALE] = {"scale", dem_field_quantity, .at = offsetof(entry_text, body.scale),
+                    .dimension = DEM_DIMENSION_NONE, .range = DEM_RANGE_POSITIVE},
+    [BODY_FIXED] = DEM_UNBUILT("fixed"),
+    [BODY_LOCK] = DEM_UNBUILT("lock"),
+    [BODY_PRESCRIBED] = DEM_UNBUILT("prescribed"),
+};
+const dem_fields dem_body_fields = DEM_FIELDS(body_table);
+
+static dem_status add_entry(dem_scene_reader *r, dem_scene_entry entry)
+{
+    struct dem_scene_owner *o = r->owner;
+    if (!dem_grow(&o->entries, &o->entry_capacity, o->entry_count, sizeof *o->entries))
+        return dem_fail_memory(r->error);
+    o->entries[o->entry_count++] = entry;
+    return DEM_OK;
+}
+
+static dem_status add_file(dem_scene_reader *r, const char *file)
+{
+    struct dem_scene_owner *o = r->owner;
+    dem_buffer text;
+    DEM_TRY(dem_file_read(file, &text, r->error));
+    size_t first = o->body_count;
+    dem_status status = dem_bodies_csv_parse(text.data, text.size, file, r->scene->shapes, r->scene->shape_count,
+                                             &o->bodies, &o->body_count, &o->body_capacity, r->error);
+    dem_buffer_release(&text);
+    if (status != DEM_OK)
+        return status;
+    return add_entry(r, (dem_scene_entry){DEM_ENTRY_FILE, file, first, o->body_count - first});
+}
+
+static dem_status add_body(dem_scene_reader *r, const dem_scene_value *v, uint64_t given, entry_text *text)
+{
+    struct dem_scene_owner *o = r->owner;
+    if (!dem_given(given, BODY_POSITION))
+        return dem_scene_refuse(r, v, "add it", "\"position\" is missing");
+    if (dem_given(given, BODY_SIZE) && dem_given(given, BODY_SCALE))
+        return dem_scene_refuse(r, v, "give one of them", "has both \"size\" and \"scale\"");
+    if (dem_given(given, BODY_SIZE))
+        text->body.scale = text->size / dem_shape_diameter(&r->scene->shapes[text->body.shape]);
+    if (!(text->body.scale > 0 && text->body.scale <= 1e100))
+        return dem_scene_refuse(r, v, "check the unit of \"size\"", "is too far from the size of its shape");
+    if (!dem_grow(&o->bodies, &o->body_capacity, o->body_count, sizeof *o->bodies))
+        return dem_fail_memory(r->error);
+    o->bodies[o->body_count] = text->body;
+    return add_entry(r, (dem_scene_entry){DEM_ENTRY_BODY, NULL, o->body_count++, 1});
+}
+
+static dem_status read_entry(dem_scene_reader *r, const dem_scene_value *v, const dem_field *field)
+{
+    entry_text text = {.body = {.scale = 1, .orientation = {1, 0, 0, 0}}};
+    uint64_t given;
+    DEM_TRY(dem_fields_read(r, v, field->fields, &text, &given));
+    bool file = dem_given(given, BODY_FILE), fill = dem_given(given, BODY_FILL);
+    if ((file || fill) && (given & (given - 1)))
+        return dem_scene_refuse(r, v, "make two entries of it", "\"%s\" stands alone", file ? "file" : "fill");
+    if (!file && !fill && !dem_given(given, BODY_SHAPE))
+        return dem_scene_refuse(r, v, "give one of them", "needs \"shape\", \"file\" or \"fill\"");
+    if (fill)
+        return add_entry(r, (dem_scene_entry){DEM_ENTRY_FILL, NULL, r->owner->fill_count - 1, 1});
+    return file ? add_file(r, text.file) : add_body(r, v, given, &text);
+}
+
+dem_status dem_section_bodies(dem_scene_reader *r, const dem_scene_value *v, const dem_field *field, void *into)
+{
+    (void)into;
+    if (!dem_json_is_array(v->json))
+        return dem_scene_refuse(r, v, "write [ { ... }, ... ]", "needs a list of bodies, files and fills");
+    for (size_t i = 0; i < dem_json_length(v->json); i++) {
+        dem_scene_value item = dem_scene_item(v, i);
+        DEM_TRY(read_entry(r, &item, field));
+    }
+    const struct dem_scene_owner *o = r->owner;
+    r->scene->bodies = (dem_bodies_def){o->bodies, o->body_count, o->fills, o->fill_count};
+    return DEM_OK;
+}

@@ -1,0 +1,230 @@
+// Materials and the laws between them.
+#include <stdio.h>
+#include <string.h>
+
+#include "math/vec.h"
+#include "sim/scene_reader.h"
+
+// ---- materials
+
+static const dem_field material_table[] = {
+    {"density", dem_field_quantity, .at = offsetof(dem_material, density), .dimension = DEM_DIMENSION_DENSITY,
+     .range = DEM_RANGE_POSITIVE},
+    {"young", dem_field_quantity, .at = offsetof(dem_material, young), .dimension = DEM_DIMENSION_PRESSURE,
+     .range = DEM_RANGE_POSITIVE},
+    {"poisson", dem_field_quantity, .at = offsetof(dem_material, poisson), .dimension = DEM_DIMENSION_NONE,
+     .range = {.low = -1, .high = 0.5, .above = true}},
+};
+const dem_fields dem_material_fields = DEM_FIELDS(material_table);
+
+dem_status dem_section_materials(dem_scene_reader *r, const dem_scene_value *v, const dem_field *field, void *into)
+{
+    (void)into;
+    size_t count = 0;
+    if (!dem_json_is_object(v->json))
+        return dem_scene_refuse(r, v, "write { \"NAME\": { ... }, ... }", "needs an object of materials by name");
+    for (const char *name = NULL; (name = dem_json_next(v->json, name));)
+        count++;
+    dem_material *materials = dem_scene_take(r, count, sizeof *materials);
+    if (!materials)
+        return dem_fail_memory(r->error);
+    r->scene->materials = materials;
+    for (const char *name = NULL; (name = dem_json_next(v->json, name)); r->scene->material_count++) {
+        dem_scene_value member = dem_scene_member(v, name);
+        *materials = (dem_material){.name = name, .density = NAN, .young = NAN, .poisson = NAN};
+        DEM_TRY(dem_fields_read(r, &member, field->fields, materials++, NULL));
+    }
+    return DEM_OK;
+}
+
+// ---- normal law
+
+static dem_status read_stiffness_from(dem_scene_reader *r, const dem_scene_value *v, const dem_field *field, void *into)
+{
+    static const dem_choice sources[] = {{"young", 0}, {NULL, 0}};
+    dem_field choice = {field->name, dem_field_choice, .choices = sources};
+    int source;
+    DEM_TRY(dem_field_choice(r, v, &choice, &source));
+    *(double *)into = 0;
+    return DEM_OK;
+}
+
+// a perfectly sticky contact would need an endless dashpot
+static dem_status read_restitution(dem_scene_reader *r, const dem_scene_value *v, const dem_field *field, void *into)
+{
+    double *restitution = into;
+    DEM_TRY(dem_field_quantity(r, v, field, restitution));
+    if (*restitution == 0)
+        return dem_scene_refuse(r, v, "use a small value such as 0.01", "must be above 0");
+    return DEM_OK;
+}
+
+static const dem_choice normal_laws[] = {{"linear", DEM_NORMAL_LINEAR}, {"hertz", DEM_NORMAL_HERTZ},
+                                         {"jkr", DEM_NOT_BUILT},        {"dmt", DEM_NOT_BUILT},
+                                         {"plugin", DEM_NOT_BUILT},     {NULL, 0}};
+static const dem_choice tails[] = {{"cut_corrected", DEM_TAIL_CUT}, {"tension_allowed", DEM_TAIL_TENSION}, {NULL, 0}};
+
+enum { NORMAL_LAW, NORMAL_STIFFNESS, NORMAL_STIFFNESS_FROM, NORMAL_RESTITUTION, NORMAL_MODE, NORMAL_RATE };
+static const dem_field normal_table[] = {
+    [NORMAL_LAW] = {"law", dem_field_choice, .at = offsetof(dem_pair_law, normal), .choices = normal_laws},
+    [NORMAL_STIFFNESS] = {"stiffness", dem_field_quantity, .at = offsetof(dem_pair_law, stiffness),
+                          .dimension = DEM_DIMENSION_STIFFNESS, .range = DEM_RANGE_POSITIVE},
+    [NORMAL_STIFFNESS_FROM] = {"stiffness_from", read_stiffness_from, .at = offsetof(dem_pair_law, stiffness)},
+    [NORMAL_RESTITUTION] = {"restitution", read_restitution, .at = offsetof(dem_pair_law, restitution),
+                            .dimension = DEM_DIMENSION_NONE, .range = {.high = 1}},
+    [NORMAL_MODE] = {"restitution_mode", dem_field_choice, .at = offsetof(dem_pair_law, tail), .choices = tails},
+    [NORMAL_RATE] = {"damping_rate", dem_field_quantity, .at = offsetof(dem_pair_law, damping_rate),
+                     .dimension = DEM_DIMENSION_RATE, .range = DEM_RANGE_FROM_0},
+    DEM_UNBUILT("plugin"),
+    DEM_UNBUILT("work_of_adhesion"),
+};
+static const dem_fields normal_fields = DEM_FIELDS(normal_table);
+
+static dem_status check_elastic(dem_scene_reader *r, const dem_scene_value *v, const dem_pair_law *law, bool poisson)
+{
+    for (int i = 0; i < 2; i++) {
+        const dem_material *m = &r->scene->materials[law->materials[i]];
+        bool young = isnan(m->young);
+        if (young || (poisson && isnan(m->poisson)))
+            return dem_scene_refuse(r, v, "add it to the material", "needs \"%s\" of \"%.60s\"",
+                                    young ? "young" : "poisson", m->name);
+    }
+    return DEM_OK;
+}
+
+static dem_status read_normal(dem_scene_reader *r, const dem_scene_value *v, const dem_field *field, void *into)
+{
+    dem_pair_law *law = into;
+    uint64_t given;
+    DEM_TRY(dem_fields_read(r, v, field->fields, law, &given));
+    bool stiffness = dem_given(given, NORMAL_STIFFNESS), from = dem_given(given, NORMAL_STIFFNESS_FROM);
+    bool restitution = dem_given(given, NORMAL_RESTITUTION), rate = dem_given(given, NORMAL_RATE);
+    if (restitution && rate)
+        return dem_scene_refuse(r, v, "give one of them", "has both \"restitution\" and \"damping_rate\"");
+    law->damping = restitution ? DEM_DAMPING_RESTITUTION : rate ? DEM_DAMPING_RATE : DEM_DAMPING_NONE;
+    if (law->normal == DEM_NORMAL_HERTZ) {
+        if (stiffness || from)
+            return dem_scene_refuse(r, v, "leave it out, or use the linear law",
+                                    "the law hertz has no \"%s\", it follows from the materials",
+                                    stiffness ? "stiffness" : "stiffness_from");
+        return check_elastic(r, v, law, true);
+    }
+    if (stiffness == from)
+        return dem_scene_refuse(r, v, "give one of them", "%s \"stiffness\" %s \"stiffness_from\"",
+                                from ? "has both" : "the law linear needs", from ? "and" : "or");
+    return from ? check_elastic(r, v, law, false) : DEM_OK;
+}
+
+// ---- friction
+
+static const dem_choice friction_laws[] = {
+    {"linear", DEM_FRICTION_LINEAR}, {"mindlin", DEM_FRICTION_MINDLIN}, {NULL, 0}};
+
+enum {
+    FRICTION_LAW,
+    FRICTION_STIFFNESS,
+    FRICTION_STIFFNESS_RATIO,
+    FRICTION_COEFFICIENT,
+    FRICTION_RATE,
+    FRICTION_RESCALE
+};
+static const dem_field friction_table[] = {
+    [FRICTION_LAW] = {"law", dem_field_choice, .at = offsetof(dem_pair_law, friction), .choices = friction_laws},
+    [FRICTION_STIFFNESS] = {"stiffness", dem_field_quantity, .at = offsetof(dem_pair_law, tangential_stiffness),
+                            .dimension = DEM_DIMENSION_STIFFNESS, .range = DEM_RANGE_POSITIVE},
+    [FRICTION_STIFFNESS_RATIO] = {"stiffness_ratio", dem_field_quantity, .at = offsetof(dem_pair_law, stiffness_ratio),
+                                  .dimension = DEM_DIMENSION_NONE, .range = DEM_RANGE_POSITIVE},
+    [FRICTION_COEFFICIENT] = {"coefficient", dem_field_quantity, .at = offsetof(dem_pair_law, friction_coefficient),
+                              true, DEM_DIMENSION_NONE, DEM_RANGE_FROM_0},
+    [FRICTION_RATE] = {"damping_rate", dem_field_quantity, .at = offsetof(dem_pair_law, tangential_rate),
+                       .dimension = DEM_DIMENSION_RATE, .range = DEM_RANGE_FROM_0},
+    [FRICTION_RESCALE] = {"rescale", dem_field_flag, .at = offsetof(dem_pair_law, rescale)},
+    DEM_UNBUILT("static_coefficient"),
+};
+static const dem_fields friction_fields = DEM_FIELDS(friction_table);
+
+// null: none. Without a name the law is the one that goes with the normal law
+static dem_status read_friction(dem_scene_reader *r, const dem_scene_value *v, const dem_field *field, void *into)
+{
+    dem_pair_law *law = into;
+    uint64_t given;
+    if (dem_json_is_null(v->json))
+        return DEM_OK;
+    law->friction = law->normal == DEM_NORMAL_HERTZ ? DEM_FRICTION_MINDLIN : DEM_FRICTION_LINEAR;
+    DEM_TRY(dem_fields_read(r, v, field->fields, law, &given));
+    bool mindlin = law->friction == DEM_FRICTION_MINDLIN;
+    if (mindlin && law->normal != DEM_NORMAL_HERTZ)
+        return dem_scene_refuse(r, v, "use the law linear, or hertz for the normal force",
+                                "the law mindlin needs the normal law hertz");
+    if (dem_given(given, FRICTION_STIFFNESS) && dem_given(given, FRICTION_STIFFNESS_RATIO))
+        return dem_scene_refuse(r, v, "give one of them", "has both \"stiffness\" and \"stiffness_ratio\"");
+    static const int of_linear[] = {FRICTION_STIFFNESS, FRICTION_STIFFNESS_RATIO};
+    for (int i = 0; mindlin && i < 2; i++)
+        if (dem_given(given, of_linear[i]))
+            return dem_scene_refuse(r, v, "leave it out, it follows from the materials",
+                                    "the law mindlin has no \"%s\"", friction_table[of_linear[i]].name);
+    if (!mindlin && dem_given(given, FRICTION_RESCALE))
+        return dem_scene_refuse(r, v, "leave it out", "the law linear has no \"rescale\"");
+    return DEM_OK;
+}
+
+// ---- contacts
+
+static dem_status read_between(dem_scene_reader *r, const dem_scene_value *v, const dem_field *field, void *into)
+{
+    uint32_t *materials = into;
+    DEM_TRY(dem_read_array(r, v, 2, "the names of two materials"));
+    for (size_t i = 0; i < 2; i++) {
+        dem_scene_value item = dem_scene_item(v, i);
+        DEM_TRY(dem_field_material(r, &item, field, &materials[i]));
+    }
+    return DEM_OK;
+}
+
+static const dem_choice effective_masses[] = {{"local", DEM_MASS_LOCAL}, {"body", DEM_MASS_BODY}, {NULL, 0}};
+
+static const dem_field contact_table[] = {
+    {"between", read_between, .at = offsetof(dem_pair_law, materials), .needed = true},
+    {"effective_mass", dem_field_choice, .at = offsetof(dem_pair_law, effective_mass), .choices = effective_masses},
+    {"normal", read_normal, .needed = true, .fields = &normal_fields},
+    {"friction", read_friction, .fields = &friction_fields},
+    DEM_UNBUILT("rolling"),
+    DEM_UNBUILT("twisting"),
+    DEM_UNBUILT("cohesion"),
+};
+const dem_fields dem_contact_fields = DEM_FIELDS(contact_table);
+
+static dem_status check_first_of_its_pair(dem_scene_reader *r, const dem_scene_value *v, const dem_pair_law *law)
+{
+    const uint32_t *m = law->materials;
+    for (const dem_pair_law *other = r->scene->laws; other < law; other++) {
+        const uint32_t *n = other->materials;
+        if ((m[0] == n[0] && m[1] == n[1]) || (m[0] == n[1] && m[1] == n[0])) {
+            dem_scene_value between = dem_scene_member(v, "between");
+            return dem_scene_refuse(r, &between, "leave one of them", "contacts[%zu] is between these two already",
+                                    (size_t)(other - r->scene->laws));
+        }
+    }
+    return DEM_OK;
+}
+
+dem_status dem_section_contacts(dem_scene_reader *r, const dem_scene_value *v, const dem_field *field, void *into)
+{
+    (void)into;
+    if (!dem_json_is_array(v->json))
+        return dem_scene_refuse(r, v, "write [ { \"between\": [\"A\", \"B\"], ... }, ... ]",
+                                "needs a list of contacts");
+    size_t count = dem_json_length(v->json);
+    dem_pair_law *laws = dem_scene_take(r, count, sizeof *laws);
+    if (!laws)
+        return dem_fail_memory(r->error);
+    r->scene->laws = laws;
+    for (size_t i = 0; i < count; i++) {
+        dem_scene_value item = dem_scene_item(v, i);
+        laws[i] = dem_pair_law_defaults();
+        DEM_TRY(dem_fields_read(r, &item, field->fields, &laws[i], NULL));
+        DEM_TRY(check_first_of_its_pair(r, &item, &laws[i]));
+        r->scene->law_count++;
+    }
+    return DEM_OK;
+}

@@ -1,0 +1,247 @@
+// Shapes: a clump file, a sphere, or spheres written into the scene.
+#include <string.h>
+
+#include "math/mat3.h"
+#include "math/quat.h"
+#include "sim/scene_reader.h"
+
+// what is given of spheres that stand in the scene itself
+typedef struct shape_text {
+    dem_shape_def *shape;
+    dem_ball *balls;
+    size_t count;
+    double mass, inertia[3];
+} shape_text;
+
+// ---- one sphere
+
+typedef struct sphere_text {
+    double radius, diameter;
+} sphere_text;
+
+enum { SPHERE_RADIUS, SPHERE_DIAMETER };
+static const dem_field sphere_table[] = {
+    [SPHERE_RADIUS] = {"radius", dem_field_quantity, .at = offsetof(sphere_text, radius),
+                       .dimension = DEM_DIMENSION_LENGTH, .range = DEM_RANGE_POSITIVE},
+    [SPHERE_DIAMETER] = {"diameter", dem_field_quantity, .at = offsetof(sphere_text, diameter),
+                         .dimension = DEM_DIMENSION_LENGTH, .range = DEM_RANGE_POSITIVE},
+};
+static const dem_fields sphere_fields = DEM_FIELDS(sphere_table);
+
+static dem_status read_sphere(dem_scene_reader *r, const dem_scene_value *v, const dem_field *field, void *into)
+{
+    dem_shape_def *shape = ((shape_text *)into)->shape;
+    sphere_text sphere = {0};
+    uint64_t given;
+    DEM_TRY(dem_fields_read(r, v, field->fields, &sphere, &given));
+    bool radius = dem_given(given, SPHERE_RADIUS);
+    if (radius == dem_given(given, SPHERE_DIAMETER))
+        return dem_scene_refuse(r, v, "give one of them", "%s \"radius\" %s \"diameter\"",
+                                radius ? "has both" : "needs", radius ? "and" : "or");
+    shape->sphere_radius = radius ? sphere.radius : sphere.diameter / 2;
+    const dem_material *material = &r->scene->materials[shape->material];
+    if (isnan(material->density))
+        return dem_scene_refuse(r, v, "add it to the material", "needs \"density\" of \"%.60s\"", material->name);
+    return shape->sphere_radius > 0 ? DEM_OK : dem_scene_refuse(r, v, "check its unit", "has no size");
+}
+
+// ---- a clump from a file
+
+static dem_status keep_clump(dem_scene_reader *r, dem_shape_def *shape, dem_clump *clump)
+{
+    struct dem_scene_owner *o = r->owner;
+    if (!dem_grow(&o->clumps, &o->clump_capacity, o->clump_count, sizeof *o->clumps)) {
+        dem_clump_destroy(clump);
+        return dem_fail_memory(r->error);
+    }
+    o->clumps[o->clump_count++] = clump;
+    shape->clump = clump;
+    return DEM_OK;
+}
+
+static dem_status read_clump(dem_scene_reader *r, const dem_scene_value *v, const dem_field *field, void *into)
+{
+    dem_shape_def *shape = ((shape_text *)into)->shape;
+    dem_clump *clump;
+    DEM_TRY(dem_field_path(r, v, field, &shape->clump_file));
+    DEM_TRY(dem_clump_read(shape->clump_file, &clump, r->error));
+    return keep_clump(r, shape, clump);
+}
+
+// ---- spheres in the scene
+
+static dem_status read_ball(dem_scene_reader *r, const dem_scene_value *v, dem_ball *ball)
+{
+    double *parts[4] = {&ball->centre.x, &ball->centre.y, &ball->centre.z, &ball->radius};
+    DEM_TRY(dem_read_array(r, v, 4, "[x, y, z, r]"));
+    for (size_t i = 0; i < 4; i++) {
+        dem_scene_value item = dem_scene_item(v, i);
+        dem_range range = i == 3 ? (dem_range)DEM_RANGE_POSITIVE : (dem_range){0};
+        DEM_TRY(dem_read_quantity(r, &item, DEM_DIMENSION_LENGTH, range, parts[i]));
+    }
+    return DEM_OK;
+}
+
+static dem_status read_balls(dem_scene_reader *r, const dem_scene_value *v, const dem_field *field, void *into)
+{
+    (void)field;
+    shape_text *text = into;
+    text->count = dem_json_length(v->json);
+    if (!text->count)
+        return dem_scene_refuse(r, v, "write [ [x, y, z, r], ... ]", "needs a list of spheres");
+    text->balls = dem_scene_take(r, text->count, sizeof *text->balls);
+    if (!text->balls)
+        return dem_fail_memory(r->error);
+    for (size_t i = 0; i < text->count; i++) {
+        dem_scene_value item = dem_scene_item(v, i);
+        DEM_TRY(read_ball(r, &item, &text->balls[i]));
+    }
+    return DEM_OK;
+}
+
+static dem_status read_inertia(dem_scene_reader *r, const dem_scene_value *v, const dem_field *field, void *into)
+{
+    double *inertia = into;
+    DEM_TRY(dem_read_array(r, v, 3, "I1 <= I2 <= I3"));
+    for (size_t i = 0; i < 3; i++) {
+        dem_scene_value item = dem_scene_item(v, i);
+        DEM_TRY(dem_read_quantity(r, &item, field->dimension, field->range, &inertia[i]));
+    }
+    return DEM_OK;
+}
+
+// moves the balls into the principal frame of their union
+static void turn_balls(shape_text *text, const dem_solid *solid)
+{
+    for (size_t i = 0; i < text->count; i++) {
+        dem_vec3 *c = &text->balls[i].centre;
+        *c = quat_unrotate(solid->axes, v3_sub(*c, solid->centre));
+    }
+}
+
+static bool agree(double a, double b, double scale)
+{
+    return fabs(a - b) <= 1e-9 * scale;
+}
+
+// what was written may be the union's own mass, centre and moments, as in a scene that was resolved
+static dem_mass_source source_of(const dem_clump_def *def)
+{
+    bool same = agree(def->mass, def->density * def->union_volume, def->mass);
+    for (int i = 0; i < 3; i++)
+        same &= agree(def->inertia[i], def->union_inertia[i], def->inertia[2]);
+    same &= v3_norm(def->union_centre) <= 1e-9 * cbrt(def->union_volume);
+    return same ? DEM_MASS_FROM_UNION : DEM_MASS_GIVEN;
+}
+
+// the material's density tells what volume the mass stands for; without one it is that of the union
+static dem_status create_clump(dem_scene_reader *r, const dem_scene_value *v, shape_text *text, double density)
+{
+    dem_union now;
+    dem_error inner;
+    dem_clump *clump;
+    if (dem_balls_union(text->balls, text->count, &now, &inner) != DEM_OK)
+        return dem_scene_pass_on(r, v, &inner);
+    dem_clump_def def = {.name = text->shape->name,
+                         .density = isnan(density) ? text->mass / now.solid.volume : density,
+                         .mass = text->mass,
+                         .orientation = {1, 0, 0, 0},
+                         .union_volume = now.solid.volume,
+                         .union_centre = now.solid.centre,
+                         .balls = text->balls,
+                         .ball_count = text->count,
+                         .seconds = NAN};
+    def.volume = def.mass / def.density;
+    double *unknown[] = {&def.fidelity.iou_gap, &def.shape.equivalent_diameter};
+    size_t figures[] = {offsetof(dem_fidelity, pieces) / sizeof(double), sizeof(dem_shape) / sizeof(double)};
+    for (int k = 0; k < 2; k++)
+        for (size_t i = 0; i < figures[k]; i++)
+            unknown[k][i] = NAN;
+    def.fidelity.pieces = now.pieces;
+    for (int i = 0; i < 3; i++) {
+        def.inertia[i] = text->inertia[i];
+        def.union_inertia[i] = now.solid.principal[i] * def.density;
+    }
+    def.mass_from = source_of(&def);
+    if (dem_clump_create(&def, &clump, &inner) != DEM_OK)
+        return dem_scene_pass_on(r, v, &inner);
+    return keep_clump(r, text->shape, clump);
+}
+
+static dem_status make_clump(dem_scene_reader *r, const dem_scene_value *v, shape_text *text, bool mass_given)
+{
+    const dem_material *material = &r->scene->materials[text->shape->material];
+    if (!mass_given) {
+        dem_union u;
+        dem_error inner;
+        if (isnan(material->density))
+            return dem_scene_refuse(r, v, "give \"mass\" and \"inertia\", or the material's density",
+                                    "needs \"density\" of \"%.60s\"", material->name);
+        if (dem_balls_union(text->balls, text->count, &u, &inner) != DEM_OK)
+            return dem_scene_pass_on(r, v, &inner);
+        turn_balls(text, &u.solid);
+        text->mass = material->density * u.solid.volume;
+        for (int i = 0; i < 3; i++)
+            text->inertia[i] = material->density * u.solid.principal[i];
+    }
+    return create_clump(r, v, text, material->density);
+}
+
+// ---- shapes
+
+static dem_status read_material(dem_scene_reader *r, const dem_scene_value *v, const dem_field *field, void *into)
+{
+    return dem_field_material(r, v, field, &((shape_text *)into)->shape->material);
+}
+
+enum { SHAPE_MATERIAL, SHAPE_CLUMP, SHAPE_SPHERE, SHAPE_SPHERES, SHAPE_MASS, SHAPE_INERTIA };
+static const dem_field shape_table[] = {
+    [SHAPE_MATERIAL] = {"material", read_material, .needed = true},
+    [SHAPE_CLUMP] = {.name = "clump", .read = read_clump},
+    [SHAPE_SPHERE] = {"sphere", read_sphere, .fields = &sphere_fields},
+    [SHAPE_SPHERES] = {.name = "spheres", .read = read_balls},
+    [SHAPE_MASS] = {"mass", dem_field_quantity, .at = offsetof(shape_text, mass), .dimension = DEM_DIMENSION_MASS,
+                    .range = DEM_RANGE_POSITIVE},
+    [SHAPE_INERTIA] = {"inertia", read_inertia, .at = offsetof(shape_text, inertia), .dimension = DEM_DIMENSION_INERTIA,
+                       .range = DEM_RANGE_POSITIVE},
+};
+const dem_fields dem_shape_fields = DEM_FIELDS(shape_table);
+
+static dem_status read_shape(dem_scene_reader *r, const dem_scene_value *v, const dem_field *field,
+                             dem_shape_def *shape)
+{
+    shape_text text = {.shape = shape};
+    uint64_t given;
+    DEM_TRY(dem_fields_read(r, v, field->fields, &text, &given));
+    int forms = dem_given(given, SHAPE_CLUMP) + dem_given(given, SHAPE_SPHERE) + dem_given(given, SHAPE_SPHERES);
+    if (forms != 1)
+        return dem_scene_refuse(r, v, "give exactly one", "%s \"clump\", \"sphere\" and \"spheres\"",
+                                forms ? "has more than one of" : "needs one of");
+    bool mass = dem_given(given, SHAPE_MASS), inertia = dem_given(given, SHAPE_INERTIA);
+    if ((mass || inertia) && !dem_given(given, SHAPE_SPHERES))
+        return dem_scene_refuse(r, v, "leave it out", "only \"spheres\" take \"%s\"", mass ? "mass" : "inertia");
+    if (mass != inertia)
+        return dem_scene_refuse(r, v, "give both, or none to have them from the spheres",
+                                "has \"mass\" or \"inertia\" without the other");
+    return dem_given(given, SHAPE_SPHERES) ? make_clump(r, v, &text, mass) : DEM_OK;
+}
+
+dem_status dem_section_shapes(dem_scene_reader *r, const dem_scene_value *v, const dem_field *field, void *into)
+{
+    (void)into;
+    size_t count = 0;
+    if (!dem_json_is_object(v->json))
+        return dem_scene_refuse(r, v, "write { \"NAME\": { ... }, ... }", "needs an object of shapes by name");
+    for (const char *name = NULL; (name = dem_json_next(v->json, name));)
+        count++;
+    dem_shape_def *shapes = dem_scene_take(r, count, sizeof *shapes);
+    if (!shapes)
+        return dem_fail_memory(r->error);
+    r->scene->shapes = shapes;
+    for (const char *name = NULL; (name = dem_json_next(v->json, name)); r->scene->shape_count++) {
+        dem_scene_value member = dem_scene_member(v, name);
+        *shapes = (dem_shape_def){.name = name};
+        DEM_TRY(read_shape(r, &member, field, shapes++));
+    }
+    return DEM_OK;
+}

@@ -1,0 +1,195 @@
+// "walls": planes, boxes of six planes, cylinders, meshes, and how they move.
+#include <stdio.h>
+#include <string.h>
+
+#include "math/vec.h"
+#include "sim/scene_reader.h"
+
+typedef struct wall_text {
+    dem_wall_def wall;
+    dem_wall_source source;
+    dem_vec3 low, high; // of a box
+} wall_text;
+
+// ---- forms
+
+static const dem_field plane_table[] = {
+    {"point", dem_field_vector, .at = offsetof(wall_text, wall.point), true, DEM_DIMENSION_LENGTH},
+    {"normal", dem_field_direction, .at = offsetof(wall_text, wall.normal), true, DEM_DIMENSION_NONE},
+};
+static const dem_fields plane_fields = DEM_FIELDS(plane_table);
+
+static const dem_field box_table[] = {
+    {"min", dem_field_vector, .at = offsetof(wall_text, low), true, DEM_DIMENSION_LENGTH},
+    {"max", dem_field_vector, .at = offsetof(wall_text, high), true, DEM_DIMENSION_LENGTH},
+};
+static const dem_fields box_fields = DEM_FIELDS(box_table);
+
+static dem_status read_box(dem_scene_reader *r, const dem_scene_value *v, const dem_field *field, void *into)
+{
+    wall_text *text = into;
+    DEM_TRY(dem_fields_read(r, v, field->fields, text, NULL));
+    for (int i = 0; i < 3; i++)
+        if (!(v3_get(text->low, i) < v3_get(text->high, i)))
+            return dem_scene_refuse(r, v, "exchange or correct them", "min must be below max along %c", "xyz"[i]);
+    return DEM_OK;
+}
+
+static const dem_choice sides[] = {{"inside", false}, {"outside", true}, {NULL, 0}};
+
+static dem_status read_side(dem_scene_reader *r, const dem_scene_value *v, const dem_field *field, void *into)
+{
+    int side;
+    DEM_TRY(dem_field_choice(r, v, field, &side));
+    *(bool *)into = side;
+    return DEM_OK;
+}
+
+static const dem_field cylinder_table[] = {
+    {"point", dem_field_vector, .at = offsetof(wall_text, wall.point), true, DEM_DIMENSION_LENGTH},
+    {"axis", dem_field_direction, .at = offsetof(wall_text, wall.normal), true, DEM_DIMENSION_NONE},
+    {"radius", dem_field_quantity, .at = offsetof(wall_text, wall.radius), true, DEM_DIMENSION_LENGTH,
+     DEM_RANGE_POSITIVE},
+    {"side", read_side, .at = offsetof(wall_text, wall.outside), .choices = sides},
+};
+static const dem_fields cylinder_fields = DEM_FIELDS(cylinder_table);
+
+// ---- motion
+
+static const dem_field translate_table[] = {
+    {"velocity", dem_field_vector, .at = offsetof(wall_text, wall.velocity), true, DEM_DIMENSION_VELOCITY},
+};
+static const dem_fields translate_fields = DEM_FIELDS(translate_table);
+
+static const dem_field rotate_table[] = {
+    {"axis", dem_field_direction, .at = offsetof(wall_text, source.axis), true, DEM_DIMENSION_NONE},
+    {"through", dem_field_vector, .at = offsetof(wall_text, wall.through), .dimension = DEM_DIMENSION_LENGTH},
+    {"rate", dem_field_quantity, .at = offsetof(wall_text, source.rate), true, DEM_DIMENSION_ANGULAR_VELOCITY},
+};
+static const dem_fields rotate_fields = DEM_FIELDS(rotate_table);
+
+static const dem_field motion_table[] = {
+    {"translate", dem_field_object, .fields = &translate_fields},
+    {"rotate", dem_field_object, .fields = &rotate_fields},
+    DEM_UNBUILT("oscillate"),
+    DEM_UNBUILT("table"),
+};
+static const dem_fields motion_fields = DEM_FIELDS(motion_table);
+
+// ---- walls
+
+static dem_status read_unit(dem_scene_reader *r, const dem_scene_value *v, const dem_field *field, void *into)
+{
+    const char **unit = into;
+    dem_error inner;
+    double factor;
+    DEM_TRY(dem_field_text(r, v, field, unit));
+    if (dem_unit(*unit, DEM_DIMENSION_LENGTH, &factor, &inner) != DEM_OK)
+        return dem_scene_pass_on(r, v, &inner);
+    return DEM_OK;
+}
+
+enum { WALL_MATERIAL, WALL_PLANE, WALL_BOX, WALL_CYLINDER, WALL_MESH, WALL_UNIT, WALL_MOTION };
+static const dem_field wall_table[] = {
+    [WALL_MATERIAL] = {"material", dem_field_material, .at = offsetof(wall_text, wall.material), true},
+    [WALL_PLANE] = {"plane", dem_field_object, .fields = &plane_fields},
+    [WALL_BOX] = {"box", read_box, .fields = &box_fields},
+    [WALL_CYLINDER] = {"cylinder", dem_field_object, .fields = &cylinder_fields},
+    [WALL_MESH] = {"mesh", dem_field_path, .at = offsetof(wall_text, wall.mesh_file)},
+    [WALL_UNIT] = {"unit", read_unit, .at = offsetof(wall_text, source.unit)},
+    [WALL_MOTION] = {"motion", dem_field_object, .fields = &motion_fields},
+    DEM_UNBUILT("cone"),
+    DEM_UNBUILT("sphere"),
+    DEM_UNBUILT("servo"),
+    DEM_UNBUILT("wear"),
+};
+const dem_fields dem_wall_fields = DEM_FIELDS(wall_table);
+
+static dem_status add_wall(dem_scene_reader *r, const dem_scene_value *v, const dem_wall_def *wall,
+                           dem_wall_source source)
+{
+    struct dem_scene_owner *o = r->owner;
+    for (size_t i = 0; i < o->wall_count; i++)
+        if (strcmp(o->walls[i].name, wall->name) == 0)
+            return dem_scene_refuse(r, v, "rename one", "there is a wall \"%.60s\" already, as a side of a box",
+                                    wall->name);
+    if (!dem_grow(&o->walls, &o->wall_capacity, o->wall_count, sizeof *o->walls) ||
+        !dem_grow(&o->wall_sources, &o->source_capacity, o->wall_count, sizeof *o->wall_sources))
+        return dem_fail_memory(r->error);
+    o->wall_sources[o->wall_count] = source;
+    o->walls[o->wall_count++] = *wall;
+    return DEM_OK;
+}
+
+// x-, x+, y-, ... with normals into the box
+static dem_status add_box(dem_scene_reader *r, const dem_scene_value *v, const wall_text *text)
+{
+    for (int i = 0; i < 6; i++) {
+        dem_wall_def side = text->wall;
+        size_t size = strlen(text->wall.name) + 4;
+        char *name = dem_scene_take(r, size, 1);
+        if (!name)
+            return dem_fail_memory(r->error);
+        snprintf(name, size, "%s.%c%c", text->wall.name, "xyz"[i / 2], "-+"[i % 2]);
+        side.name = name;
+        side.kind = DEM_WALL_PLANE;
+        side.point = i % 2 ? text->high : text->low;
+        v3_set(&side.normal, i / 2, i % 2 ? -1 : 1);
+        DEM_TRY(add_wall(r, v, &side, text->source));
+    }
+    return DEM_OK;
+}
+
+static dem_status add_mesh(dem_scene_reader *r, const dem_scene_value *v, wall_text *text)
+{
+    dem_mesh mesh;
+    double unit = 1;
+    if (!text->source.unit)
+        text->source.unit = "m";
+    DEM_TRY(dem_unit(text->source.unit, DEM_DIMENSION_LENGTH, &unit, r->error));
+    DEM_TRY(dem_mesh_read(r->ctx, text->wall.mesh_file, &mesh, r->error));
+    if (unit != 1)
+        dem_mesh_scale(&mesh, unit);
+    text->wall.kind = DEM_WALL_MESH;
+    text->wall.mesh = mesh;
+    dem_status status = add_wall(r, v, &text->wall, text->source);
+    if (status != DEM_OK)
+        dem_mesh_free(&mesh);
+    return status;
+}
+
+static dem_status read_wall(dem_scene_reader *r, const dem_scene_value *v, const dem_field *field, const char *name)
+{
+    wall_text text = {.wall.name = name, .source.axis = {0, 0, 1}};
+    uint64_t given;
+    DEM_TRY(dem_fields_read(r, v, field->fields, &text, &given));
+    int forms = 0;
+    for (int i = WALL_PLANE; i <= WALL_MESH; i++)
+        forms += dem_given(given, i);
+    if (forms != 1)
+        return dem_scene_refuse(r, v, "give exactly one", "%s \"plane\", \"box\", \"cylinder\" and \"mesh\"",
+                                forms ? "has more than one of" : "needs one of");
+    if (dem_given(given, WALL_UNIT) && !dem_given(given, WALL_MESH))
+        return dem_scene_refuse(r, v, "leave it out", "\"unit\" is the unit of a mesh file");
+    text.wall.spin = v3_scale(text.source.axis, text.source.rate);
+    if (dem_given(given, WALL_BOX))
+        return add_box(r, v, &text);
+    if (dem_given(given, WALL_MESH))
+        return add_mesh(r, v, &text);
+    text.wall.kind = dem_given(given, WALL_PLANE) ? DEM_WALL_PLANE : DEM_WALL_CYLINDER;
+    return add_wall(r, v, &text.wall, text.source);
+}
+
+dem_status dem_section_walls(dem_scene_reader *r, const dem_scene_value *v, const dem_field *field, void *into)
+{
+    (void)into;
+    if (!dem_json_is_object(v->json))
+        return dem_scene_refuse(r, v, "write { \"NAME\": { ... }, ... }", "needs an object of walls by name");
+    for (const char *name = NULL; (name = dem_json_next(v->json, name));) {
+        dem_scene_value member = dem_scene_member(v, name);
+        DEM_TRY(read_wall(r, &member, field, name));
+    }
+    r->scene->walls = r->owner->walls;
+    r->scene->wall_count = r->owner->wall_count;
+    return DEM_OK;
+}

@@ -1,0 +1,419 @@
+// A scene as a file with every default written out, in SI units.
+#include <math.h>
+#include <string.h>
+
+#include "math/vec.h"
+#include "sim/scene.h"
+
+static void put_vec(dem_json_writer *w, const char *key, dem_vec3 v)
+{
+    dem_json_put_numbers(w, key, (double[]){v.x, v.y, v.z}, 3);
+}
+
+// a number that was not given has no key
+static void put_known(dem_json_writer *w, const char *key, double value)
+{
+    if (!isnan(value))
+        dem_json_put_number(w, key, value);
+}
+
+static const char *text_of(const char *text)
+{
+    return text ? text : "";
+}
+
+static const char *material_of(const dem_scene *scene, uint32_t material)
+{
+    return material < scene->material_count ? text_of(scene->materials[material].name) : "";
+}
+
+static const char *shape_of(const dem_scene *scene, uint32_t shape)
+{
+    return shape < scene->shape_count ? text_of(scene->shapes[shape].name) : "";
+}
+
+// ---- head
+
+static void put_time(dem_json_writer *w, const dem_scene *scene)
+{
+    const dem_time_def *time = &scene->time;
+    dem_json_open_object(w, "time");
+    put_known(w, "end", time->end);
+    if (time->step > 0)
+        dem_json_put_number(w, "step", time->step);
+    else
+        dem_json_put_string(w, "step", "auto");
+    dem_json_put_number(w, "safety", dem_scene_safety(scene));
+    dem_json_put_number(w, "contact_steps", time->contact_steps);
+    dem_json_close(w, '}');
+}
+
+static void put_domain(dem_json_writer *w, const dem_domain_def *domain)
+{
+    dem_json_open_object(w, "domain");
+    put_vec(w, "min", domain->low);
+    put_vec(w, "max", domain->high);
+    dem_json_open_array(w, "periodic", false);
+    for (int i = 0; i < 3; i++)
+        dem_json_put_bool(w, NULL, domain->periodic[i]);
+    dem_json_close(w, ']');
+    dem_json_put_string(w, "leaving", domain->leaving == DEM_LEAVING_IGNORE ? "ignore" : "error");
+    dem_json_close(w, '}');
+}
+
+// ---- materials and contacts
+
+static void put_materials(dem_json_writer *w, const dem_scene *scene)
+{
+    dem_json_open_object(w, "materials");
+    for (size_t i = 0; i < scene->material_count; i++) {
+        const dem_material *m = &scene->materials[i];
+        dem_json_open_object(w, text_of(m->name));
+        put_known(w, "density", m->density);
+        put_known(w, "young", m->young);
+        put_known(w, "poisson", m->poisson);
+        dem_json_close(w, '}');
+    }
+    dem_json_close(w, '}');
+}
+
+static void put_normal(dem_json_writer *w, const dem_pair_law *law)
+{
+    dem_json_open_object(w, "normal");
+    bool hertz = law->normal == DEM_NORMAL_HERTZ;
+    dem_json_put_string(w, "law", hertz ? "hertz" : "linear");
+    if (!hertz && law->stiffness > 0)
+        dem_json_put_number(w, "stiffness", law->stiffness);
+    else if (!hertz)
+        dem_json_put_string(w, "stiffness_from", "young");
+    if (law->damping == DEM_DAMPING_RESTITUTION)
+        dem_json_put_number(w, "restitution", law->restitution);
+    else if (law->damping == DEM_DAMPING_RATE)
+        dem_json_put_number(w, "damping_rate", law->damping_rate);
+    dem_json_put_string(w, "restitution_mode", law->tail == DEM_TAIL_CUT ? "cut_corrected" : "tension_allowed");
+    dem_json_close(w, '}');
+}
+
+static void put_friction(dem_json_writer *w, const dem_pair_law *law)
+{
+    if (law->friction == DEM_FRICTION_NONE) {
+        dem_json_put_raw(w, "friction", "null");
+        return;
+    }
+    bool mindlin = law->friction == DEM_FRICTION_MINDLIN;
+    dem_json_open_object(w, "friction");
+    dem_json_put_string(w, "law", mindlin ? "mindlin" : "linear");
+    if (!mindlin && law->tangential_stiffness > 0)
+        dem_json_put_number(w, "stiffness", law->tangential_stiffness);
+    else if (!mindlin)
+        dem_json_put_number(w, "stiffness_ratio", law->stiffness_ratio);
+    dem_json_put_number(w, "coefficient", law->friction_coefficient);
+    put_known(w, "damping_rate", law->tangential_rate);
+    if (mindlin)
+        dem_json_put_bool(w, "rescale", law->rescale);
+    dem_json_close(w, '}');
+}
+
+static void put_contacts(dem_json_writer *w, const dem_scene *scene)
+{
+    dem_json_open_array(w, "contacts", true);
+    for (size_t i = 0; i < scene->law_count; i++) {
+        const dem_pair_law *law = &scene->laws[i];
+        dem_json_open_object(w, NULL);
+        dem_json_open_array(w, "between", false);
+        for (int k = 0; k < 2; k++)
+            dem_json_put_string(w, NULL, material_of(scene, law->materials[k]));
+        dem_json_close(w, ']');
+        dem_json_put_string(w, "effective_mass", law->effective_mass == DEM_MASS_BODY ? "body" : "local");
+        put_normal(w, law);
+        put_friction(w, law);
+        dem_json_close(w, '}');
+    }
+    dem_json_close(w, ']');
+}
+
+// ---- shapes
+
+// the world gives a clump the density of its material; spheres of the scene say the mass that comes to
+static void put_spheres(dem_json_writer *w, const dem_clump *clump, double density)
+{
+    dem_clump_def def = dem_clump_view(clump);
+    double factor = isnan(density) ? 1 : density / def.density;
+    dem_json_put_number(w, "mass", def.mass * factor);
+    dem_json_put_numbers(w, "inertia",
+                         (double[]){def.inertia[0] * factor, def.inertia[1] * factor, def.inertia[2] * factor}, 3);
+    dem_json_open_array(w, "spheres", false);
+    for (size_t i = 0; i < def.ball_count; i++) {
+        dem_vec3 c = def.balls[i].centre;
+        dem_json_put_numbers(w, NULL, (double[]){c.x, c.y, c.z, def.balls[i].radius}, 4);
+    }
+    dem_json_close(w, ']');
+}
+
+static void put_shapes(dem_json_writer *w, const dem_scene *scene)
+{
+    dem_json_open_object(w, "shapes");
+    for (size_t i = 0; i < scene->shape_count; i++) {
+        const dem_shape_def *shape = &scene->shapes[i];
+        dem_json_open_object(w, text_of(shape->name));
+        dem_json_put_string(w, "material", material_of(scene, shape->material));
+        if (shape->clump_file)
+            dem_json_put_string(w, "clump", shape->clump_file);
+        else if (shape->clump)
+            put_spheres(w, shape->clump,
+                        shape->material < scene->material_count ? scene->materials[shape->material].density : NAN);
+        else {
+            dem_json_open_object(w, "sphere");
+            dem_json_put_number(w, "radius", shape->sphere_radius);
+            dem_json_close(w, '}');
+        }
+        dem_json_close(w, '}');
+    }
+    dem_json_close(w, '}');
+}
+
+// ---- bodies
+
+static void put_body(dem_json_writer *w, const dem_scene *scene, const dem_body_def *body)
+{
+    dem_quat q = body->orientation;
+    dem_json_open_object(w, NULL);
+    dem_json_put_string(w, "shape", shape_of(scene, body->shape));
+    put_vec(w, "position", body->position);
+    dem_json_put_numbers(w, "orientation", (double[]){q.w, q.x, q.y, q.z}, 4);
+    put_vec(w, "velocity", body->velocity);
+    put_vec(w, "spin", body->spin);
+    dem_json_put_number(w, "scale", body->scale);
+    dem_json_close(w, '}');
+}
+
+static void put_table(dem_json_writer *w, const dem_size_def *size)
+{
+    dem_json_put_numbers(w, "sizes", size->sizes, size->table_count);
+    dem_json_put_numbers(w, "passing", size->passing, size->table_count);
+}
+
+static void put_size(dem_json_writer *w, const dem_size_def *size)
+{
+    static const char *const names[] = {[DEM_SIZE_FIXED] = "fixed",
+                                        [DEM_SIZE_UNIFORM] = "uniform",
+                                        [DEM_SIZE_NORMAL] = "normal",
+                                        [DEM_SIZE_LOGNORMAL] = "lognormal",
+                                        [DEM_SIZE_TABLE] = "table"};
+    static const char *const keys[][2] = {[DEM_SIZE_FIXED] = {"value"},
+                                          [DEM_SIZE_UNIFORM] = {"min", "max"},
+                                          [DEM_SIZE_NORMAL] = {"mean", "sigma"},
+                                          [DEM_SIZE_LOGNORMAL] = {"median", "sigma"},
+                                          [DEM_SIZE_TABLE] = {NULL}};
+    if (size->law == DEM_SIZE_AS_IS)
+        return;
+    dem_json_open_object(w, "size");
+    dem_json_put_string(w, "law", names[size->law]);
+    for (int i = 0; i < 2 && keys[size->law][i]; i++)
+        dem_json_put_number(w, keys[size->law][i], i ? size->b : size->a);
+    if (size->law == DEM_SIZE_TABLE)
+        put_table(w, size);
+    if ((size->law == DEM_SIZE_NORMAL || size->law == DEM_SIZE_LOGNORMAL) && size->smallest > 0)
+        dem_json_put_number(w, "min", size->smallest);
+    if ((size->law == DEM_SIZE_NORMAL || size->law == DEM_SIZE_LOGNORMAL) && isfinite(size->largest))
+        dem_json_put_number(w, "max", size->largest);
+    dem_json_put_string(w, "by", size->by_mass ? "mass" : "number");
+    dem_json_close(w, '}');
+}
+
+static void put_fill(dem_json_writer *w, const dem_scene *scene, const dem_fill_def *fill)
+{
+    dem_json_open_object(w, NULL);
+    dem_json_open_object(w, "fill");
+    dem_json_open_array(w, "mix", false);
+    for (size_t i = 0; i < fill->mix_count; i++) {
+        dem_json_open_object(w, NULL);
+        dem_json_put_string(w, "shape", shape_of(scene, fill->mix[i].shape));
+        dem_json_put_number(w, "share", fill->mix[i].share);
+        put_size(w, &fill->mix[i].size);
+        dem_json_close(w, '}');
+    }
+    dem_json_close(w, ']');
+    dem_json_put_string(w, "share_by", fill->share_by_mass ? "mass" : "number");
+    dem_json_open_array(w, "box", false);
+    put_vec(w, NULL, fill->low);
+    put_vec(w, NULL, fill->high);
+    dem_json_close(w, ']');
+    if (fill->count)
+        dem_json_put_whole(w, "count", (int64_t)fill->count);
+    else
+        dem_json_put_number(w, "void_ratio", fill->void_ratio);
+    dem_json_put_whole(w, "seed", (int64_t)fill->seed); // JSON whole numbers are signed: seeds from 2^63 wrap
+    dem_json_put_number(w, "gap", fill->gap);
+    put_vec(w, "velocity", fill->velocity);
+    dem_json_close(w, '}');
+    dem_json_close(w, '}');
+}
+
+static void put_entry(dem_json_writer *w, const dem_scene *scene, const dem_scene_entry *entry)
+{
+    if (entry->kind == DEM_ENTRY_FILE) {
+        dem_json_open_object(w, NULL);
+        dem_json_put_string(w, "file", entry->file);
+        dem_json_close(w, '}');
+        return;
+    }
+    for (size_t i = entry->first; i < entry->first + entry->count; i++)
+        if (entry->kind == DEM_ENTRY_BODY)
+            put_body(w, scene, &scene->bodies.bodies[i]);
+        else
+            put_fill(w, scene, &scene->bodies.fills[i]);
+}
+
+// the entries of a scene that was read, unless its bodies have been replaced since
+static void put_bodies(dem_json_writer *w, const dem_scene *scene)
+{
+    const struct dem_scene_owner *o = scene->owner;
+    const dem_bodies_def *b = &scene->bodies;
+    bool as_read = o && o->bodies == b->bodies && o->body_count == b->count && o->fills == b->fills &&
+                   o->fill_count == b->fill_count;
+    const dem_scene_entry plain[] = {{DEM_ENTRY_BODY, NULL, 0, b->count}, {DEM_ENTRY_FILL, NULL, 0, b->fill_count}};
+    const dem_scene_entry *entries = as_read ? o->entries : plain;
+    dem_json_open_array(w, "bodies", true);
+    for (size_t i = 0; i < (as_read ? o->entry_count : 2); i++)
+        put_entry(w, scene, &entries[i]);
+    dem_json_close(w, ']');
+}
+
+// ---- walls
+
+// how the wall was given; one made by hand turns about its spin, and its mesh file is in metres
+static dem_wall_source source_of(const dem_scene *scene, size_t index)
+{
+    const dem_wall_def *wall = &scene->walls[index];
+    const struct dem_scene_owner *o = scene->owner;
+    if (o && index < o->wall_count && scene->walls == o->walls) {
+        dem_wall_source source = o->wall_sources[index];
+        dem_vec3 spin = v3_scale(source.axis, source.rate);
+        if (spin.x == wall->spin.x && spin.y == wall->spin.y && spin.z == wall->spin.z)
+            return source;
+    }
+    return (dem_wall_source){"m", v3_unit(wall->spin), v3_norm(wall->spin)};
+}
+
+static void put_motion(dem_json_writer *w, const dem_wall_def *wall, const dem_wall_source *source)
+{
+    dem_json_open_object(w, "motion");
+    dem_json_open_object(w, "translate");
+    put_vec(w, "velocity", wall->velocity);
+    dem_json_close(w, '}');
+    dem_json_open_object(w, "rotate");
+    put_vec(w, "axis", source->axis);
+    put_vec(w, "through", wall->through);
+    dem_json_put_number(w, "rate", source->rate);
+    dem_json_close(w, '}');
+    dem_json_close(w, '}');
+}
+
+static void put_form(dem_json_writer *w, const dem_wall_def *wall, const dem_wall_source *source)
+{
+    if (wall->kind == DEM_WALL_MESH) {
+        dem_json_put_string(w, "mesh", wall->mesh_file);
+        dem_json_put_string(w, "unit", source->unit ? source->unit : "m");
+        return;
+    }
+    bool plane = wall->kind == DEM_WALL_PLANE;
+    dem_json_open_object(w, plane ? "plane" : "cylinder");
+    put_vec(w, "point", wall->point);
+    put_vec(w, plane ? "normal" : "axis", wall->normal);
+    if (!plane) {
+        dem_json_put_number(w, "radius", wall->radius);
+        dem_json_put_string(w, "side", wall->outside ? "outside" : "inside");
+    }
+    dem_json_close(w, '}');
+}
+
+static dem_status put_walls(dem_json_writer *w, const dem_scene *scene, dem_error *error)
+{
+    dem_json_open_object(w, "walls");
+    for (size_t i = 0; i < scene->wall_count; i++) {
+        const dem_wall_def *wall = &scene->walls[i];
+        if (wall->kind == DEM_WALL_MESH && !wall->mesh_file)
+            return dem_fail(error, DEM_USAGE,
+                            "the mesh of wall \"%.60s\" is in no file; write it and name it in mesh_file",
+                            text_of(wall->name));
+        dem_wall_source source = source_of(scene, i);
+        dem_json_open_object(w, text_of(wall->name));
+        dem_json_put_string(w, "material", material_of(scene, wall->material));
+        put_form(w, wall, &source);
+        put_motion(w, wall, &source);
+        dem_json_close(w, '}');
+    }
+    dem_json_close(w, '}');
+    return DEM_OK;
+}
+
+// ---- the rest
+
+static void put_damping(dem_json_writer *w, const dem_damping_def *damping)
+{
+    dem_json_open_object(w, "damping");
+    dem_json_put_number(w, "local", damping->local);
+    dem_json_put_string(w, "local_frame", damping->local_frame == DEM_LOCAL_VECTOR ? "vector" : "space");
+    dem_json_put_bool(w, "exclude_gravity", damping->exclude_gravity);
+    dem_json_put_number(w, "viscous", damping->viscous);
+    dem_json_close(w, '}');
+}
+
+static void put_output(dem_json_writer *w, const dem_output_def *output)
+{
+    char checkpoint[64];
+    dem_json_open_object(w, "output");
+    dem_json_put_string(w, "directory", text_of(output->directory));
+    dem_json_put_number(w, "frames", output->frames);
+    dem_json_put_number(w, "series", output->series);
+    if (output->checkpoint_wall) {
+        dem_format_double(checkpoint, sizeof checkpoint, output->checkpoint, 17);
+        strcat(checkpoint, " s wall");
+        dem_json_put_string(w, "checkpoint", checkpoint);
+    } else
+        dem_json_put_number(w, "checkpoint", output->checkpoint);
+    dem_json_put_bool(w, "energy", output->energy);
+    dem_json_close(w, '}');
+}
+
+static dem_status put_scene(dem_json_writer *w, const dem_scene *scene, dem_error *error)
+{
+    static const char *const multiples[] = {
+        [DEM_MULTIPLE_SUM] = "sum", [DEM_MULTIPLE_MEAN] = "mean", [DEM_MULTIPLE_MERGE] = "merge"};
+    dem_json_open_object(w, NULL);
+    dem_json_put_string(w, "schema", "dem-scene/1");
+    dem_json_put_string(w, "title", text_of(scene->title));
+    put_vec(w, "gravity", scene->gravity);
+    put_time(w, scene);
+    put_domain(w, &scene->domain);
+    put_materials(w, scene);
+    put_contacts(w, scene);
+    put_shapes(w, scene);
+    put_bodies(w, scene);
+    DEM_TRY(put_walls(w, scene, error));
+    put_damping(w, &scene->damping);
+    dem_json_open_object(w, "integrator");
+    dem_json_put_string(w, "translation", "central");
+    dem_json_put_string(w, "rotation", "lsym");
+    dem_json_close(w, '}');
+    dem_json_put_string(w, "contacts_between_clumps", multiples[scene->multiple]);
+    put_output(w, &scene->output);
+    dem_json_close(w, '}');
+    return DEM_OK;
+}
+
+dem_status dem_scene_resolved(const dem_scene *scene, char **text, dem_error *error)
+{
+    dem_buffer out = {0};
+    dem_json_writer writer = dem_json_begin(&out);
+    *text = NULL;
+    dem_status status = put_scene(&writer, scene, error);
+    if (status == DEM_OK && out.failed)
+        status = dem_fail_memory(error);
+    if (status == DEM_OK)
+        *text = out.data;
+    else
+        dem_buffer_release(&out);
+    return status;
+}

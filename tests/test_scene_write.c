@@ -1,0 +1,176 @@
+#include "scenes.h"
+
+static void check_same_text(const char *a, const char *b)
+{
+    if (strcmp(a, b) != 0)
+        print_error("%s\n---\n%s\n", a, b);
+    check(strcmp(a, b) == 0);
+}
+
+// compares what the text cannot: numbers in every bit, clumps, meshes
+static void check_same_scene(const dem_scene *a, const dem_scene *b)
+{
+    check(a->shape_count == b->shape_count && a->bodies.count == b->bodies.count && a->wall_count == b->wall_count);
+    assert_memory_equal(&a->time, &b->time, sizeof a->time);
+    assert_memory_equal(&a->domain, &b->domain, sizeof a->domain);
+    assert_memory_equal(&a->gravity, &b->gravity, sizeof a->gravity);
+    for (size_t i = 0; i < a->shape_count; i++) {
+        check(a->shapes[i].sphere_radius == b->shapes[i].sphere_radius &&
+              a->shapes[i].material == b->shapes[i].material);
+        check(!a->shapes[i].clump == !b->shapes[i].clump);
+        check(!a->shapes[i].clump || dem_clump_hash(a->shapes[i].clump) == dem_clump_hash(b->shapes[i].clump));
+    }
+    check(a->law_count == b->law_count);
+    for (size_t i = 0; i < a->law_count; i++)
+        check(a->laws[i].tail == b->laws[i].tail && a->laws[i].damping == b->laws[i].damping);
+    for (size_t i = 0; i < a->bodies.count; i++)
+        assert_memory_equal(&a->bodies.bodies[i].scale, &b->bodies.bodies[i].scale,
+                            sizeof(dem_body_def) - offsetof(dem_body_def, scale));
+    for (size_t i = 0; i < a->wall_count; i++) {
+        check(a->walls[i].kind == b->walls[i].kind && a->walls[i].material == b->walls[i].material);
+        check_vec(a->walls[i].spin, b->walls[i].spin, 0);
+        check_vec(a->walls[i].normal, b->walls[i].normal, 0);
+        check(a->walls[i].mesh.vertex_count == b->walls[i].mesh.vertex_count);
+        for (size_t k = 0; k < a->walls[i].mesh.vertex_count; k++)
+            check_vec(a->walls[i].mesh.vertices[k], b->walls[i].mesh.vertices[k], 0);
+    }
+}
+
+static void check_round_trip(const char *text, const char *where)
+{
+    dem_scene scene, back;
+    dem_error error;
+    char *once, *twice;
+    check_ok(scene_read(text, where, NULL, &scene, &error), error);
+    check_ok(dem_scene_resolved(&scene, &once, &error), error);
+    check_ok(dem_scene_read_text(NULL, once, strlen(once), "once.json", where ? "/" : NULL, NULL, &back, &error),
+             error);
+    check_ok(dem_scene_resolved(&back, &twice, &error), error);
+    check_same_text(once, twice);
+    check_same_scene(&scene, &back);
+    free(once);
+    free(twice);
+    dem_scene_release(&scene);
+    dem_scene_release(&back);
+}
+
+static void a_resolved_scene_reads_back_as_the_same(void **state)
+{
+    (void)state;
+    check_round_trip("{'schema': 'dem-scene/1'}", NULL);
+    check_round_trip(SCENE_SAMPLE, scene_folder());
+    check_round_trip(
+        "{" SCENE_HEAD ", 'domain': {'min': [0, -1, null], 'max': [1.1, 1, null], 'periodic': [true, true, false]},\n"
+        "'time': {'end': 0.1, 'step': 1e-6, 'contact_steps': 0}, 'contacts_between_clumps': 'mean',\n"
+        "'damping': {'local': 0.7, 'local_frame': 'vector', 'viscous': 1}, 'output': {'checkpoint': 3, 'energy': "
+        "false},\n"
+        "'walls': {'b': {'box': {'min': [0, 0, 0], 'max': [1, 2, 3]}, 'material': 'steel', 'motion': {'rotate':\n"
+        " {'axis': [1, 2, 3], 'rate': '7 rpm', 'through': [1, 1, 1]}}}, 'c': {'cylinder': {'point': [1, 2, 3],\n"
+        " 'axis': [1, 1, 0.1], 'radius': 1, 'side': 'outside'}, 'material': 'rock'},\n"
+        " 'p': {'plane': {'point': [0, 0, 0], 'normal': [1, -7, 1e-3]}, 'material': 'steel', 'motion':\n"
+        " {'rotate': {'axis': [-3, 0, 0], 'rate': 0}}}},\n"
+        "'bodies': [{'shape': 'ball', 'position': [0.1, 0.2, 0.3], 'orientation': [1, 2, 3, 4], 'spin': [1, 2, 3]},\n"
+        " {'fill': {'mix': [{'shape': 'ball', 'size': {'law': 'uniform', 'min': 0.1, 'max': 0.2}},\n"
+        "  {'shape': 'pair', 'size': {'law': 'normal', 'mean': 1, 'sigma': 0.1, 'min': 0.5, 'max': 2, 'by': 'mass'}},\n"
+        "  {'shape': 'pair', 'size': {'law': 'table', 'sizes': [1, 2, 3], 'passing': [0, 0.5, 1]}},\n"
+        "  {'shape': 'pair', 'size': {'law': 'lognormal', 'median': 1, 'sigma': 0.1}}], 'share_by': 'mass',\n"
+        "  'box': [[0, 0, 0], [1, 1, 1]], 'void_ratio': 0.7, 'seed': -3}},\n"
+        " {'shape': 'pair', 'position': [1, 2, 3], 'size': '12 mm'}]}",
+        NULL);
+    check_round_trip(
+        "{'schema': 'dem-scene/1', 'materials': {'a': {'young': 1e9, 'poisson': 0.3}, 'b': {'density': 3,\n"
+        "'young': 1}}, 'contacts': [\n"
+        "{'between': ['a', 'a'], 'effective_mass': 'body', 'normal': {'law': 'hertz', 'damping_rate': 5,\n"
+        " 'restitution_mode': 'tension_allowed'}, 'friction': {'coefficient': 1, 'rescale': false}},\n"
+        "{'between': ['a', 'b'], 'normal': {'stiffness_from': 'young', 'restitution': 0.9},\n"
+        " 'friction': {'coefficient': 1, 'stiffness_ratio': 0.1, 'damping_rate': 0}},\n"
+        "{'between': ['b', 'b'], 'normal': {'stiffness': 1},\n"
+        " 'friction': {'coefficient': 1, 'stiffness': 0.1}}],\n"
+        "'shapes': {'s': {'spheres': [[0, 0, 0, 1], [0.1, 0.7, 0.3, 0.6]], 'mass': 2, 'inertia': [1, 2, 3],\n"
+        " 'material': 'a'}, 't': {'spheres': [[5, 0, 0, 1], [5.1, 0.7, 0.3, 0.6], [4, 0, 0, 0.3]],\n"
+        " 'material': 'b'}}}",
+        NULL);
+}
+
+static void every_default_is_written(void **state)
+{
+    (void)state;
+    dem_scene s = scene_of("{" SCENE_HEAD "}");
+    char *text;
+    dem_error error;
+    check_ok(dem_scene_resolved(&s, &text, &error), error);
+    static const char *const parts[] = {"\"step\": \"auto\"",
+                                        "\"safety\": 0.8",
+                                        "\"contact_steps\": 10",
+                                        "\"leaving\": \"error\"",
+                                        "\"periodic\": [false, false, false]",
+                                        "\"effective_mass\": \"local\"",
+                                        "\"law\": \"linear\"",
+                                        "\"restitution_mode\": \"cut_corrected\"",
+                                        "\"friction\": null",
+                                        "\"local_frame\": \"space\"",
+                                        "\"exclude_gravity\": false",
+                                        "\"translation\": \"central\"",
+                                        "\"contacts_between_clumps\": \"sum\"",
+                                        "\"directory\": \"out\"",
+                                        "\"checkpoint\": 0",
+                                        "\"energy\": true"};
+    for (size_t i = 0; i < sizeof parts / sizeof *parts; i++)
+        if (!strstr(text, parts[i])) {
+            print_error("%s not in %s\n", parts[i], text);
+            check(false);
+        }
+    free(text);
+    dem_scene_release(&s);
+}
+
+static void a_scene_made_by_hand_is_written_too(void **state)
+{
+    (void)state;
+    const dem_ball ball = {{0, 0, 0}, 1};
+    const dem_clump_def def = {.density = 2,
+                               .mass = 2,
+                               .volume = 1,
+                               .inertia = {1, 1, 1},
+                               .orientation = {1, 0, 0, 0},
+                               .balls = &ball,
+                               .ball_count = 1,
+                               .union_volume = NAN};
+    dem_clump *clump;
+    dem_error error;
+    check_ok(dem_clump_create(&def, &clump, &error), error);
+    const dem_material material = {"m", 3, NAN, NAN};
+    const dem_shape_def shape = {.name = "s", .clump = clump};
+    dem_pair_law law = dem_pair_law_defaults();
+    law.stiffness = 5;
+    const dem_body_def bodies[] = {{0, 1, {1, 2, 3}, {1, 0, 0, 0}, {0, 0, 0}, {0, 0, 0}},
+                                   {0, 2, {4, 5, 6}, {1, 0, 0, 0}, {0, 0, 0}, {0, 0, 0}}};
+    dem_wall_def wall = {.name = "w", .normal = {0, 0, 1}, .spin = {0, 0, 2}};
+    dem_scene scene = dem_scene_defaults(), back;
+    scene.materials = &material, scene.material_count = 1;
+    scene.laws = &law, scene.law_count = 1;
+    scene.shapes = &shape, scene.shape_count = 1;
+    scene.bodies = (dem_bodies_def){.bodies = bodies, .count = 2};
+    scene.walls = &wall, scene.wall_count = 1;
+    char *text;
+    check_ok(dem_scene_resolved(&scene, &text, &error), error);
+    check_ok(dem_scene_read_text(NULL, text, strlen(text), "x", NULL, NULL, &back, &error), error);
+    // the clump weighs what its material makes of it
+    check(dem_clump_view(back.shapes[0].clump).mass == 3 && dem_clump_view(back.shapes[0].clump).density == 3);
+    check(back.bodies.count == 2 && back.bodies.bodies[1].scale == 2 && back.walls[0].spin.z == 2);
+    free(text);
+    dem_scene_release(&back);
+    wall.kind = DEM_WALL_MESH;
+    check(dem_scene_resolved(&scene, &text, &error) == DEM_USAGE && !text);
+    dem_clump_destroy(clump);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(a_resolved_scene_reads_back_as_the_same),
+        cmocka_unit_test(every_default_is_written),
+        cmocka_unit_test(a_scene_made_by_hand_is_written_too),
+    };
+    return cmocka_run_group_tests(tests, make_scene_folder, remove_scene_folder);
+}
