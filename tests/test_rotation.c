@@ -201,9 +201,7 @@ static dem_vec3 top_axis(const top *t)
 
 static void top_step(top *t)
 {
-    // the first moment acts for half a step only: the spin is given at the time of the pose
-    double part = dem_world_steps(t->world) ? 1 : 0.5;
-    dem_vec3 moment = v3_scale(v3_cross(top_axis(t), v3(0, 0, -1)), part * t->weight);
+    dem_vec3 moment = v3_scale(v3_cross(top_axis(t), v3(0, 0, -1)), t->weight);
     dem_world_push(t->world, 0, v3(0, 0, 0), moment);
     run_steps(t->world, 1);
 }
