@@ -3,7 +3,8 @@
 /// Stability: with M the masses and K the stiffness of all contacts, central differences are stable below 2 / sqrt(L),
 /// L the largest eigenvalue of M^-1 K. Since 1/2 k (u_p - u_q)^2 <= k (u_p^2 + u_q^2), L is at most the largest
 /// eigenvalue of the bodies' own 6 x 6 problems, contacts with other bodies counted twice: a bound, not an estimate.
-/// Dashpots act on velocities half a step old: the limit falls by sqrt(1 + z^2) - z, z = 1/2 sqrt(L) max(c / k).
+/// Dashpots act on velocities half a step old: the limit falls by sqrt(1 + z^2) - z, z = 1/2 sqrt(L) max(c / k); by
+/// less where c is corrected for that (see law/normal.h), so this is a bound too.
 ///
 /// Accuracy: an automatic step also takes the shortest contact in a number of steps (`contact_steps`).
 #ifndef DEM_SIM_TIMESTEP_H
