@@ -47,7 +47,8 @@ static void put_members(dem_json_writer *w, const dem_run_report *r)
 {
     const dem_figures *f = &r->figures;
     dem_json_put_string(w, "ended", r->ended);
-    dem_json_put_whole(w, "steps", (int64_t)r->steps);
+    dem_json_put_whole(w, "steps", (int64_t)(r->figures.step - r->warmup));
+    dem_json_put_whole(w, "timed_steps", (int64_t)r->steps);
     dem_json_put_number(w, "time", f->time);
     dem_json_put_number(w, "step", r->step);
     dem_json_put_number(w, "critical_step", r->critical_step);
