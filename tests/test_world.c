@@ -104,6 +104,8 @@ static void each_kernel_made_for_a_scene_equals_the_general_one(void **state)
         model_lattice(m, 100, 0.022, 1.5, 1);
         model_box(m, v3(0, 0, 0), v3(0.11, 0.11, 0.11));
         dem_world *w = model_world(m, 1), *general = model_world(m, 1);
+        if (w->kernels->instance_count == 1)
+            skip();  // built with the general one only
         check(!w->instance->any);
         use_kernels(general, w->kernels, true);
         check(general->instance->any);

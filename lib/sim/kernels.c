@@ -18,6 +18,9 @@
 #define HERTZ .hertz = true, .friction = true, .mindlin = true, .slide_damping = true
 #define RATE .rate = true
 #define RESTITUTION .restitution = true, .cut = true, .local_mass = true
+#ifdef DEM_FEW_KERNELS
+#define INSTANCES(X)
+#else
 #define INSTANCES(X)                                                                                                   \
     X(linear_rate_spheres, LINEAR, RATE, .ledger = true)                                                               \
     X(linear_rate, LINEAR, RATE, .ledger = true, .offset = true)                                                       \
@@ -29,6 +32,7 @@
     X(hertz_spheres, HERTZ, RESTITUTION, .ledger = true)                                                               \
     X(hertz_clumps, HERTZ, RESTITUTION, .ledger = true, .offset = true)                                                \
     X(hertz_sizes, HERTZ, RESTITUTION, .ledger = true, .offset = true, .scaled = true)
+#endif
 
 #define KERNELS_OF(name, f)                                                                                            \
     static void name##_pairs(dem_features given, const dem_rows *rows, const dem_contact_job *job)                     \

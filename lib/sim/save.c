@@ -33,7 +33,7 @@ typedef struct block_head {
     dem_features features;
     unsigned char unused[8 - sizeof(dem_features) % 8];
     uint64_t steps, epoch_steps, exact_then;
-    double epoch_time, last_step, next_step, wall_path, sweep_speed, push_work, stable_step, crude_then, damping_most;
+    double epoch_time, last_step, next_step, wall_path, sweep_speed, push_work, stable_step, crude_then;
     double energy_start, potential_start, most_energy, skin;
     uint64_t pairs;
 } block_head;
@@ -88,7 +88,6 @@ static block_head head_of(const dem_world *w)
     h.push_work = w->push_work;
     h.stable_step = w->stable_step;
     h.crude_then = w->crude_then;
-    h.damping_most = w->damping_most;
     h.energy_start = w->energy_start;
     h.potential_start = w->potential_start;
     h.most_energy = w->views.most_energy;
@@ -110,7 +109,6 @@ static void take_head(dem_world *w, const block_head *h)
     w->push_work = h->push_work;
     w->stable_step = h->stable_step;
     w->crude_then = h->crude_then;
-    w->damping_most = h->damping_most;
     w->energy_start = h->energy_start;
     w->potential_start = h->potential_start;
     w->views.most_energy = h->most_energy;

@@ -13,7 +13,7 @@ enum {
 
 static const double SAFETY = 0.8, SAFETY_HERTZ = 0.5;
 static const double GROW_FROM = 1.1; // a step is not raised for less
-static const double CRUDE_GROWTH = 1.25;
+static const double CRUDE_GROWTH = 1.12;  // of the step's cheap bound, that asks for the exact one
 
 double dem_largest_eigenvalue6(double a[6][6])
 {
@@ -53,23 +53,21 @@ double dem_largest_eigenvalue6(double a[6][6])
 
 // ---- the bound
 
-static double limit_of(double eigenvalue, double damping_per_stiffness)
+// the h at which h^2 k + 2 h c = 4
+static double limit_of(double k, double c)
 {
-    double root = sqrt(eigenvalue), z = damping_per_stiffness * root / 2;
-    return eigenvalue > 0 ? 2 / root * (sqrt(1 + z * z) - z) : INFINITY;
+    return k > 0 || c > 0 ? 4 / (c + sqrt(c * c + 4 * k)) : INFINITY;
 }
 
 typedef double matrix6[6][6];
 
 typedef struct assembly {
-    matrix6 *stiffness; // [bodies] in the body's axes, scaled by masses
+    matrix6 *stiffness, *damping;  // [bodies] in the body's axes, in units of its masses
     bool listed;
-    double damping; // largest c / k
 } assembly;
 
 // k_n n n^T + k_t (1 - n n^T) at `arm`, seen in the body's axes and in units of its masses
-static void add_stiffness(const dem_world *w, matrix6 *a, size_t row, dem_vec3 arm, dem_vec3 n, double kn, double kt,
-                          double times)
+static void add_stiffness(const dem_world *w, matrix6 *a, size_t row, dem_vec3 arm, dem_vec3 n, double kn, double kt)
 {
     const double *inertia = w->bodies.inertia + DEM_ROW * row;
     dem_quat q = body_orientation(&w->bodies, row);
@@ -78,7 +76,7 @@ static void add_stiffness(const dem_world *w, matrix6 *a, size_t row, dem_vec3 a
     axis[2] = v3_cross(axis[0], axis[1]);
     for (int k = 0; k < 3; k++) {
         dem_vec3 u = axis[k], m = v3_cross(r, u);
-        double b[6] = {u.x, u.y, u.z, m.x, m.y, m.z}, stiffness = times * (k == 0 ? kn : kt);
+        double b[6] = {u.x, u.y, u.z, m.x, m.y, m.z}, stiffness = k == 0 ? kn : kt;
         for (int i = 0; i < 6; i++)
             b[i] *= sqrt(inertia[i < 3 ? 0 : i - 2]);
         for (int i = 0; i < 6; i++)
@@ -98,6 +96,28 @@ static double expected_overlap(const dem_world *w, const dem_contact_item *item,
     return fmax(r->overlap, impact);
 }
 
+// a contact by its numbers along the normal and across it
+typedef struct stiffness {
+    double normal, slide, damping, slide_damping;  // [N/m], [N s/m]
+} stiffness;
+
+static stiffness stiffness_of(const dem_world *w, const assembly *all, const dem_contact_item *item,
+                              const dem_contact_record *r, bool wall)
+{
+    const double *law = w->laws.rows + (size_t)LAW_SLOTS * item->law;
+    double ra = w->templates.spheres[item->sphere_a][3] * body_scale(&w->bodies, item->a);
+    double rb = wall ? ra : w->templates.spheres[item->sphere_b][3] * body_scale(&w->bodies, item->b);
+    double area = wall ? ra : fmin(ra, rb) * fmin(ra, rb) / (ra + rb), radius = 0, m = r->reduced_mass;
+    if (law[LAW_HERTZ] > 0) {
+        double reduced = wall ? ra : ra * rb / (ra + rb);
+        radius = sqrt(reduced * fmax(all->listed ? expected_overlap(w, item, r, wall, reduced) : r->overlap, 0));
+    }
+    stiffness s = {.normal = law_stiffness(law, area, radius), .slide = law_slide_stiffness(law, area, radius)};
+    s.damping = law[LAW_RATE] * m + law[LAW_ZETA] * sqrt(s.normal * m);
+    s.slide_damping = law[LAW_SLIDE_RATE] * m + law[LAW_SLIDE_ZETA] * sqrt(s.slide * m);
+    return s;
+}
+
 static void visit_stiffness(void *user, dem_world *w, int form, const dem_contact_item *item,
                             const dem_contact_record *r)
 {
@@ -105,51 +125,48 @@ static void visit_stiffness(void *user, dem_world *w, int form, const dem_contac
     bool wall = form >= 0;
     if (!r->touches && !all->listed)
         return;
-    const double *law = w->laws.rows + (size_t)LAW_SLOTS * item->law;
-    double ra = w->templates.spheres[item->sphere_a][3] * body_scale(&w->bodies, item->a);
-    double rb = wall ? ra : w->templates.spheres[item->sphere_b][3] * body_scale(&w->bodies, item->b);
-    double area = wall ? ra : fmin(ra, rb) * fmin(ra, rb) / (ra + rb), radius = 0;
-    if (law[LAW_HERTZ] > 0) {
-        double reduced = wall ? ra : ra * rb / (ra + rb);
-        radius = sqrt(reduced * fmax(all->listed ? expected_overlap(w, item, r, wall, reduced) : r->overlap, 0));
-    }
-    double kn = law_stiffness(law, area, radius), kt = law_slide_stiffness(law, area, radius);
+    stiffness s = stiffness_of(w, all, item, r, wall);
     dem_vec3 n = v3(r->normal[0], r->normal[1], r->normal[2]);
-    dem_vec3 arm = v3(r->point_a[0], r->point_a[1], r->point_a[2]);
-    add_stiffness(w, &all->stiffness[item->a], item->a, arm, n, kn, kt, wall ? 1 : 2);
-    if (!wall)
-        add_stiffness(w, &all->stiffness[item->b], item->b, v3(r->point_b[0], r->point_b[1], r->point_b[2]), n, kn, kt,
-                      2);
-    double m = r->reduced_mass;
-    if (kn > 0)
-        all->damping = fmax(all->damping, (law[LAW_RATE] * m + law[LAW_ZETA] * sqrt(kn * m)) / kn);
-    if (kt > 0)
-        all->damping = fmax(all->damping, (law[LAW_SLIDE_RATE] * m + law[LAW_SLIDE_ZETA] * sqrt(kt * m)) / kt);
+    dem_vec3 arm[2] = {v3(r->point_a[0], r->point_a[1], r->point_a[2]), v3(r->point_b[0], r->point_b[1], r->point_b[2])};
+    uint32_t row[2] = {item->a, item->b};
+    for (int side = 0; side < (wall ? 1 : 2); side++) {
+        double times = wall ? 1 : 2;
+        add_stiffness(w, &all->stiffness[row[side]], row[side], arm[side], n, times * s.normal, times * s.slide);
+        if (w->laws.damped)
+            add_stiffness(w, &all->damping[row[side]], row[side], arm[side], n, times * s.damping,
+                          times * s.slide_damping);
+    }
+}
+
+static double trace(matrix6 *a)
+{
+    double sum = 0;
+    for (int i = 0; i < 6; i++)
+        sum += (*a)[i][i];
+    return sum;
 }
 
 dem_status dem_step_stable(dem_world *w, bool listed, dem_step_bound *bound, dem_error *error)
 {
-    assembly all = {.stiffness = dem_alloc_zero(w->bodies.count, sizeof *all.stiffness), .listed = listed};
-    if (!all.stiffness)
-        return dem_fail_memory(error);
-    dem_status status = dem_visit_contacts(w, visit_stiffness, &all, error);
+    size_t n = w->bodies.count;
+    assembly all = {dem_alloc_zero(n, sizeof *all.stiffness), dem_alloc_zero(w->laws.damped ? n : 0, sizeof *all.damping),
+                    listed};
     *bound = (dem_step_bound){.step = INFINITY};
-    for (size_t row = 0; status == DEM_OK && row < w->bodies.count; row++) {
-        double trace = 0;
-        for (int i = 0; i < 6; i++)
-            trace += all.stiffness[row][i][i];
-        if (trace <= bound->eigenvalue)
-            continue; // the largest eigenvalue is not larger than the trace
-        double largest = dem_largest_eigenvalue6(all.stiffness[row]);
-        if (largest > bound->eigenvalue) {
-            bound->eigenvalue = largest;
-            bound->row = row;
-        }
+    dem_status status = all.stiffness && all.damping ? DEM_OK : dem_fail_memory(error);
+    if (status == DEM_OK)
+        status = dem_visit_contacts(w, visit_stiffness, &all, error);
+    for (size_t row = 0; status == DEM_OK && row < n; row++) {
+        matrix6 *k = &all.stiffness[row], *c = w->laws.damped ? &all.damping[row] : NULL;
+        // no eigenvalue is larger than the trace
+        if (limit_of(trace(k), c ? trace(c) : 0) >= bound->step)
+            continue;
+        double largest = dem_largest_eigenvalue6(*k), damping = c ? dem_largest_eigenvalue6(*c) : 0;
+        double step = limit_of(largest, damping);
+        if (step < bound->step)
+            *bound = (dem_step_bound){largest, damping, step, row};
     }
     free(all.stiffness);
-    w->damping_most = fmax(w->damping_most, all.damping);
-    bound->damping = all.damping * sqrt(bound->eigenvalue) / 2;
-    bound->step = limit_of(bound->eigenvalue, all.damping);
+    free(all.damping);
     return status;
 }
 
@@ -211,26 +228,29 @@ static double safety(const dem_world *w)
     return isnan(w->time_def.safety) ? (w->features.hertz ? SAFETY_HERTZ : SAFETY) : w->time_def.safety;
 }
 
-// an upper bound of L in the time of a look: the listed contacts of a body times the worst that one can do
-static double crude_eigenvalue(const dem_world *w)
+// a lower bound of the stable step in the time of a look: the listed contacts of a body times the worst one can do
+static double crude_step(const dem_world *w)
 {
-    double most = 0;
+    double least = INFINITY;
     size_t n = w->laws.material_count;
     for (size_t row = 0; row < w->bodies.count; row++) {
-        size_t contacts = 0;
+        double contacts = 0;
         for (size_t i = w->pairs.adjacency_first[row]; i < w->pairs.adjacency_first[row + 1]; i++)
             contacts += w->pairs.items[w->pairs.adjacency[i]].count;
         const dem_template *t = &w->templates.items[w->bodies.shape[row]];
-        double scale = body_scale(&w->bodies, row), r = t->radius_max * scale, worst = 0;
+        double scale = body_scale(&w->bodies, row), cube = scale * scale * scale, r = t->radius_max * scale;
+        double mass = t->mass * cube, inverse = 2 * contacts / (t->least_mass * cube);
         for (uint32_t other = 0; other < n; other++) {
             const double *law = laws_between(&w->laws, t->material, other);
-            if (law)
-                worst = fmax(worst, law_stiffness(law, r / 2, r) + 2 * law_slide_stiffness(law, r / 2, r));
+            if (!law)
+                continue;
+            double k = law_stiffness(law, r / 2, r), kt = law_slide_stiffness(law, r / 2, r);
+            double c = law[LAW_RATE] * mass + law[LAW_ZETA] * sqrt(k * mass);
+            double ct = law[LAW_SLIDE_RATE] * mass + law[LAW_SLIDE_ZETA] * sqrt(kt * mass);
+            least = fmin(least, limit_of(inverse * (k + 2 * kt), inverse * (c + 2 * ct)));
         }
-        double inverse = 1 / (t->least_mass * scale * scale * scale);
-        most = fmax(most, 2 * (double)contacts * worst * inverse);
     }
-    return most;
+    return least;
 }
 
 static void set_step(dem_world *w, double step)
@@ -252,7 +272,7 @@ static dem_status choose(dem_world *w, double *step, dem_error *error)
 {
     dem_step_bound bound;
     DEM_TRY(dem_step_stable(w, true, &bound, error));
-    w->crude_then = crude_eigenvalue(w);
+    w->crude_then = crude_step(w);
     w->exact_then = w->steps;
     w->stable_step = bound.step;
     *step = fmin(safety(w) * bound.step, dem_step_guess(w));
@@ -272,10 +292,10 @@ dem_status dem_step_review(dem_world *w, dem_error *error)
 {
     if (w->time_def.step > 0 || w->steps % REVIEW_EVERY != 0)
         return DEM_OK;
-    double begin = dem_clock(), crude = crude_eigenvalue(w), step = dem_step_guess(w);
+    double begin = dem_clock(), crude = crude_step(w), step = dem_step_guess(w);
     // where even the cheap bound asks for no smaller step, the other need not be known
-    if (safety(w) * limit_of(crude, w->damping_most) < step) {
-        if (crude > CRUDE_GROWTH * w->crude_then || w->steps - w->exact_then >= EXACT_EVERY)
+    if (safety(w) * crude < step) {
+        if (CRUDE_GROWTH * crude < w->crude_then || w->steps - w->exact_then >= EXACT_EVERY)
             DEM_TRY(choose(w, &step, error));
         else
             step = fmin(step, safety(w) * w->stable_step);

@@ -1,9 +1,10 @@
 /// The time step.
 ///
-/// Stability: with M the masses and K the stiffness of all contacts, central differences are stable below 2 / sqrt(L),
-/// L the largest eigenvalue of M^-1 K. Since 1/2 k (u_p - u_q)^2 <= k (u_p^2 + u_q^2), L is at most the largest
-/// eigenvalue of the bodies' own 6 x 6 problems, contacts with other bodies counted twice: a bound, not an estimate.
-/// Dashpots act on velocities half a step old: the limit falls by sqrt(1 + z^2) - z, z = 1/2 sqrt(L) max(c / k).
+/// Stability: with M the masses, K the stiffness and C the dashpots of all contacts, central differences with dashpots
+/// on velocities half a step old are stable while h^2 K + 2 h C < 4 M. (One contact: h < 2 (sqrt(1 + z^2) - z) / w.)
+/// Since 1/2 k (u_p - u_q)^2 <= k (u_p^2 + u_q^2), it suffices that this holds for each body's own 6 x 6 problem with
+/// contacts with other bodies counted twice: with the largest eigenvalues of M^-1 K and M^-1 C of each, a bound and not
+/// an estimate.
 ///
 /// Accuracy: an automatic step also takes the shortest contact in a number of steps (`contact_steps`).
 #ifndef DEM_SIM_TIMESTEP_H
@@ -12,10 +13,10 @@
 #include "sim/state.h"
 
 typedef struct dem_step_bound {
-    double eigenvalue; ///< L [1/s^2]
-    double damping;    ///< z [-]
-    double step;       ///< the limit with both [s]; INFINITY without contacts
-    size_t row;        ///< the body that sets it
+    double eigenvalue;    ///< of M^-1 K, of the body that sets the bound [1/s^2]
+    double damping;       ///< of M^-1 C, of the same body [1/s]
+    double step;          ///< the limit [s]; INFINITY without contacts
+    size_t row;           ///< that body
 } dem_step_bound;
 
 /// The bound for the contacts that touch, or for all that are listed and may do so before the lists change.
