@@ -58,6 +58,18 @@ static inline void check_true_(int condition, const char *what, const char *file
         }                                                                       \
     } while (0)
 
+/// Whether the build is slow, so that long tests are to be shortened.
+#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
+#define SLOW_BUILD 1
+#elif defined(__has_feature)
+#if __has_feature(address_sanitizer) || __has_feature(thread_sanitizer)
+#define SLOW_BUILD 1
+#endif
+#endif
+#ifndef SLOW_BUILD
+#define SLOW_BUILD 0
+#endif
+
 /// Path of a file among the real grains that may lie beside the project; the test is skipped where they do not.
 #define check_shared(path)                          \
     do {                                            \
@@ -66,6 +78,7 @@ static inline void check_true_(int condition, const char *what, const char *file
             skip();                                 \
         fclose(shared_);                            \
     } while (0)
+#define SHARED_DATA(name) DEM_SOURCE_DIR "/../shared/refdata/" name
 #define SHARED_MESH(name) DEM_SOURCE_DIR "/../shared/meshes/" name
 
 #endif

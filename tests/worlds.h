@@ -182,6 +182,45 @@ static inline const dem_figures *measured(dem_world *w)
     return dem_world_figures(w);
 }
 
+/// A body as the rows have it, without measuring: velocities are half a step old.
+static inline size_t row_of(const dem_world *w, size_t body)
+{
+    return w->bodies.place[body];
+}
+static inline dem_vec3 position_now(const dem_world *w, size_t body)
+{
+    return body_position(&w->bodies, row_of(w, body));
+}
+static inline dem_quat orientation_now(const dem_world *w, size_t body)
+{
+    size_t row = row_of(w, body);
+    return template_principal_orientation(&w->templates.items[w->bodies.shape[row]], body_orientation(&w->bodies, row));
+}
+static inline dem_vec3 velocity_before(const dem_world *w, size_t body)
+{
+    const double *m = body_pose(&w->bodies, row_of(w, body)) + 8;
+    return v3(m[0], m[1], m[2]);
+}
+static inline dem_vec3 spin_before(const dem_world *w, size_t body)
+{
+    const double *m = body_pose(&w->bodies, row_of(w, body)) + 8;
+    return v3(m[3], m[4], m[5]);
+}
+
+/// The angle between two orientations [rad].
+static inline double angle_between(dem_quat a, dem_quat b)
+{
+    dem_quat d = quat_multiply(a, quat_conjugate(b));
+    return 2 * atan2(sqrt(d.x * d.x + d.y * d.y + d.z * d.z), fabs(d.w));
+}
+
+/// The turn by |v| [rad] about v.
+static inline dem_quat quat_about(dem_vec3 v)
+{
+    double angle = v3_norm(v), s = angle > 0 ? sin(angle / 2) / angle : 0.5;
+    return (dem_quat){cos(angle / 2), s * v.x, s * v.y, s * v.z};
+}
+
 /// Total momentum and angular momentum about the origin, at the half step, straight from the rows.
 static inline void total_momentum(const dem_world *w, dem_vec3 *linear, dem_vec3 *angular)
 {

@@ -242,18 +242,30 @@ DEM_INLINE void load_law(const dem_features f, const dem_rows *rows, const uint3
             law[k] = wide_all(rows->laws[k]);
 }
 
-DEM_INLINE wide shared(const dem_features f, wide x, wide weight)
-{
-    if (f.weighted)
-        x = x * weight;
-    return x;
-}
-
 /// Sums in lanes of 8 whatever the width.
 DEM_INLINE void tally_add(double sum[DEM_BLOCK_LANES], size_t g, wide x)
 {
     double *lane = sum + g % DEM_BLOCK_LANES;
     wide_store(lane, wide_load(lane) + x);
+}
+
+// energy dissipated since the last step [J]
+typedef struct contact_loss {
+    wide friction, viscous;
+} contact_loss;
+
+// power of a moving wall [W], for measuring
+DEM_INLINE void put_losses(const contact_loss *loss, wide power, size_t g, dem_contact_record *records)
+{
+    double friction[DEM_WIDTH], viscous[DEM_WIDTH], work[DEM_WIDTH];
+    wide_store(friction, loss->friction);
+    wide_store(viscous, loss->viscous);
+    wide_store(work, power);
+    for (size_t i = 0; i < DEM_WIDTH; i++) {
+        records[g + i].lost_friction = friction[i];
+        records[g + i].lost_viscous = viscous[i];
+        records[g + i].wall_power = work[i];
+    }
 }
 
 DEM_INLINE void put_records(const dem_features f, const contact_batch *batch, size_t g, const normal_law *n,
@@ -316,6 +328,7 @@ DEM_INLINE void contact_law(const dem_features f, const dem_rows *rows, const de
     wide weight = f.weighted ? wide_load(c->weight + at) : wide_all(1);
     wide3 force = {zero, zero, zero}, spring = force;
     wide slide = zero;
+    contact_loss loss = {zero, zero};
     if (f.friction) {
         wide turn = step * wide_load(batch->at[AT_TURN] + g);
         spring = (wide3){wide_load(c->spring[0] + at), wide_load(c->spring[1] + at), wide_load(c->spring[2] + at)};
@@ -332,26 +345,40 @@ DEM_INLINE void contact_law(const dem_features f, const dem_rows *rows, const de
             wide_store(c->spring[0] + at, spring.x);
             wide_store(c->spring[1] + at, spring.y);
             wide_store(c->spring[2] + at, spring.z);
-            if (f.ledger)
-                tally_add(job->tally->friction, g, shared(f, t.lost, weight));
-            if (f.ledger && f.slide_damping)
-                tally_add(job->tally->viscous, g, shared(f, t.damped, weight));
+        }
+        loss.friction = t.lost;
+        if (f.ledger && f.slide_damping) {
+            wide3 was = {wide_load(c->dash[0] + at), wide_load(c->dash[1] + at), wide_load(c->dash[2] + at)};
+            wide3 both = {was.x + t.dash.x, was.y + t.dash.y, was.z + t.dash.z};
+            loss.viscous = wide_all(0.5) * step * dot3(both, slip);
+            if (!record) {
+                wide_store(c->dash[0] + at, t.dash.x);
+                wide_store(c->dash[1] + at, t.dash.y);
+                wide_store(c->dash[2] + at, t.dash.z);
+            }
         }
     }
     force = or_zero3(on, along3(force, zero - normal.force, n));
-    if (f.ledger && damped(f) && !record) {
-        wide loss = wide_or_zero(on, normal.elastic - normal.force), was = wide_load(c->loss + at);
-        wide lost = wide_all(0.5) * (was + loss) * (vn * step);
-        wide_store(c->loss + at, loss);
-        tally_add(job->tally->viscous, g, shared(f, lost, weight));
+    if (f.ledger && damped(f)) {
+        wide now = wide_or_zero(on, normal.elastic - normal.force), was = wide_load(c->loss + at);
+        loss.viscous = loss.viscous + wide_all(0.5) * (was + now) * (vn * step);
+        if (!record)
+            wide_store(c->loss + at, now);
     }
-    if (f.weighted)
+    if (f.weighted) {
         force = scale3(force, weight);
+        loss = (contact_loss){loss.friction * weight, loss.viscous * weight};
+    }
     if (record) {
-        put_records(f, batch, g, &normal, &force, &spring, slide, mass, weight, on,
-                    job->records + (at - g - job->begin));
+        dem_contact_record *records = job->records + (at - g - job->begin);
+        put_records(f, batch, g, &normal, &force, &spring, slide, mass, weight, on, records);
+        put_losses(&loss, wall && f.moving ? dot3(force, get3(batch, AT_WALL, g)) : zero, g, records);
         return;
     }
+    if (f.ledger && f.friction)
+        tally_add(job->tally->friction, g, loss.friction);
+    if (f.ledger && damped(f))
+        tally_add(job->tally->viscous, g, loss.viscous);
     force = scale3(force, wide_all(job->kick));
     put3(batch, AT_FORCE, g, force);
     if (wall && f.moving && f.ledger)

@@ -109,18 +109,37 @@ size_t dem_contact_bytes(const dem_features *f, int form)
     return bytes;
 }
 
+dem_contact_history dem_history_get(const dem_contact_columns *c, size_t at)
+{
+    dem_contact_history h = {.loss = c->loss ? c->loss[at] : 0};
+    for (int k = 0; k < 3; k++) {
+        h.spring[k] = c->spring[k] ? c->spring[k][at] : 0;
+        h.dash[k] = c->dash[k] ? c->dash[k][at] : 0;
+    }
+    return h;
+}
+
+void dem_history_put(const dem_contact_columns *c, size_t at, const dem_contact_history *h)
+{
+    for (int k = 0; k < 3; k++) {
+        if (c->spring[k])
+            c->spring[k][at] = h->spring[k];
+        if (c->dash[k])
+            c->dash[k][at] = h->dash[k];
+    }
+    if (c->loss)
+        c->loss[at] = h->loss;
+}
+
 dem_contact_item dem_contact_get(const dem_contact_columns *c, size_t at)
 {
-    dem_contact_item item = {.a = c->a[at],
-                             .b = c->b ? c->b[at] : 0,
-                             .sphere_a = c->sphere_a[at],
-                             .sphere_b = c->sphere_b[at],
-                             .shift = c->shift ? c->shift[at] : 0,
-                             .law = c->law ? c->law[at] : 0,
-                             .loss = c->loss ? c->loss[at] : 0};
-    for (int k = 0; c->spring[0] && k < 3; k++)
-        item.spring[k] = c->spring[k][at];
-    return item;
+    return (dem_contact_item){.a = c->a[at],
+                              .b = c->b ? c->b[at] : 0,
+                              .sphere_a = c->sphere_a[at],
+                              .sphere_b = c->sphere_b[at],
+                              .shift = c->shift ? c->shift[at] : 0,
+                              .law = c->law ? c->law[at] : 0,
+                              .history = dem_history_get(c, at)};
 }
 
 void dem_contact_put(const dem_contact_columns *c, size_t at, const dem_contact_item *item)
@@ -134,10 +153,7 @@ void dem_contact_put(const dem_contact_columns *c, size_t at, const dem_contact_
         c->shift[at] = item->shift;
     if (c->law)
         c->law[at] = item->law;
-    for (int k = 0; c->spring[0] && k < 3; k++)
-        c->spring[k][at] = item->spring[k];
-    if (c->loss)
-        c->loss[at] = item->loss;
+    dem_history_put(c, at, &item->history);
     if (c->weight)
         c->weight[at] = 1;
     // a mesh contact that has not been measured yet does not touch
@@ -173,11 +189,8 @@ static void take_history(const dem_world *w, const dem_segment *s, const dem_pai
     if (*k == p->count)
         return;
     size_t at = segment_place(s, p->start + *k);
-    if (c->sphere_a[at] == item->sphere_a && c->sphere_b[at] == item->sphere_b) {
-        dem_contact_item old = dem_contact_get(c, at);
-        memcpy(item->spring, old.spring, sizeof item->spring);
-        item->loss = old.loss;
-    }
+    if (c->sphere_a[at] == item->sphere_a && c->sphere_b[at] == item->sphere_b)
+        item->history = dem_history_get(c, at);
 }
 
 static bool add_item(list *l, const dem_contact_item *item)

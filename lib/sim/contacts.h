@@ -21,6 +21,9 @@
     X(double, spring[0], "m", f->friction, "tangential spring, x")                                                     \
     X(double, spring[1], "m", f->friction, "tangential spring, y")                                                     \
     X(double, spring[2], "m", f->friction, "tangential spring, z")                                                     \
+    X(double, dash[0], "N", f->ledger && f->slide_damping, "tangential dashpot of the last step, x")                   \
+    X(double, dash[1], "N", f->ledger && f->slide_damping, "tangential dashpot, y")                                    \
+    X(double, dash[2], "N", f->ledger && f->slide_damping, "tangential dashpot, z")                                    \
     X(double, loss, "N", f->ledger && (f->rate || f->restitution), "damped force of the last step")                    \
     X(double, weight, "-", f->weighted, "share of the force that counts")                                              \
     X(double, geometry[0], "-", mesh, "normal, x")                                                                     \
@@ -51,10 +54,18 @@ void dem_weigh_contacts(dem_world *world, size_t begin, size_t end);
 /// Memory of a contact [B].
 size_t dem_contact_bytes(const dem_features *features, int form);
 
+/// What a contact remembers.
+typedef struct dem_contact_history {
+    double spring[3], dash[3], loss;
+} dem_contact_history;
+
+dem_contact_history dem_history_get(const dem_contact_columns *columns, size_t place);
+void dem_history_put(const dem_contact_columns *columns, size_t place, const dem_contact_history *history);
+
 /// One contact with its history, to be carried from an old list to a new one.
 typedef struct dem_contact_item {
     uint32_t a, b, sphere_a, sphere_b, shift, law;
-    double spring[3], loss;
+    dem_contact_history history;
 } dem_contact_item;
 
 dem_contact_item dem_contact_get(const dem_contact_columns *columns, size_t place);

@@ -36,7 +36,9 @@ typedef struct dem_tally {
 typedef struct dem_contact_record {
     double normal[3], point_a[3], point_b[3]; ///< normal out of a; contact point from the centres [m]
     double overlap, normal_force, elastic_normal, elastic_slide, reduced_mass, stiffness, slide_stiffness;
-    double force[3]; ///< on a [N]
+    double force[3];                    ///< on a [N]
+    double lost_friction, lost_viscous; ///< dissipated since the last step [J] (ledger)
+    double wall_power;                  ///< of a moving wall [W]
     double radius_a, radius_b;
     bool touches;
 } dem_contact_record;
@@ -49,6 +51,7 @@ typedef struct dem_contact_columns {
     uint32_t *shift;               ///< row of the image of b (periodic)
     uint32_t *law;                 ///< row of the law (mixed)
     double *spring[3];             ///< tangential spring [m] (friction)
+    double *dash[3];               ///< force of the tangential dashpot in the last step [N] (ledger, slide_damping)
     double *loss;                  ///< elastic force that was not passed on in the last step [N] (ledger, damped)
     double *weight;                ///< share of the force that counts [-] (weighted)
     double *geometry[7];           ///< of mesh walls: normal, overlap, point from the body's centre

@@ -127,6 +127,9 @@ static void visit_contact(void *user, dem_world *w, int form, const dem_contact_
 {
     tour *t = user;
     dem_views *v = &w->views;
+    v->since.friction += r->lost_friction;
+    v->since.viscous += r->lost_viscous;
+    v->since.work += w->last_step / 2 * r->wall_power;
     if (!r->touches)
         return;
     dem_figures *f = &v->figures;
@@ -167,27 +170,43 @@ static void visit_contact(void *user, dem_world *w, int form, const dem_contact_
 
 // ---- bodies
 
-// force and moment of local and global damping, as the motion pass has them
-static void add_damping(const dem_world *w, size_t row, dem_vec3 weight, dem_vec3 *force, dem_vec3 *moment)
+// force and moment of local and of global damping
+typedef struct damping {
+    dem_vec3 local[2], drag[2];
+} damping;
+
+// as the motion pass has them
+static damping damping_of(const dem_world *w, size_t row, dem_vec3 weight, const dem_vec3 load[2])
 {
     const double *motion = body_pose(&w->bodies, row) + 8, *p = w->bodies.momentum + DEM_ROW * row;
     dem_vec3 v[2] = {v3(motion[0], motion[1], motion[2]), v3(motion[3], motion[4], motion[5])};
-    dem_vec3 momentum[2] = {v3(p[0], p[1], p[2]), v3(p[3], p[4], p[5])}, *out[2] = {force, moment};
+    dem_vec3 momentum[2] = {v3(p[0], p[1], p[2]), v3(p[3], p[4], p[5])};
+    damping d;
     for (int k = 0; k < 2; k++) {
-        dem_vec3 f = *out[k];
-        if (k == 0 && w->damping.exclude_gravity)
-            f = v3_sub(f, weight);
-        dem_vec3 d = v3(0, 0, 0);
+        dem_vec3 f = k == 0 && w->damping.exclude_gravity ? v3_sub(load[k], weight) : load[k], against = v3(0, 0, 0);
         double speed = v3_norm(v[k]);
         if (w->damping.local_frame == DEM_LOCAL_VECTOR && speed > 0)
-            d = v3_scale(v[k], -v3_norm(f) / speed);
+            against = v3_scale(v[k], -v3_norm(f) / speed);
         else if (w->damping.local_frame == DEM_LOCAL_SPACE)
             for (int c = 0; c < 3; c++) {
                 double x = v3_get(v[k], c);
-                v3_set(&d, c, x > 0 ? -fabs(v3_get(f, c)) : x < 0 ? fabs(v3_get(f, c)) : 0);
+                v3_set(&against, c, x > 0 ? -fabs(v3_get(f, c)) : x < 0 ? fabs(v3_get(f, c)) : 0);
             }
-        *out[k] = v3_along(v3_along(*out[k], w->damping.local, d), -w->damping.viscous, momentum[k]);
+        d.local[k] = v3_scale(against, w->damping.local);
+        d.drag[k] = v3_scale(momentum[k], -w->damping.viscous);
     }
+    return d;
+}
+
+// what damping takes in the half step to the positions' time, which is in no tally yet
+static void note_damping(dem_world *w, size_t i, const damping *d)
+{
+    dem_views *v = &w->views;
+    const double *motion = body_pose(&w->bodies, w->bodies.place[i]) + 8;
+    dem_vec3 path = v3_scale(v3_add(v3(motion[0], motion[1], motion[2]), v->velocity[i]), w->last_step / 4);
+    dem_vec3 turn = v3_scale(v3_add(v3(motion[3], motion[4], motion[5]), v->spin[i]), w->last_step / 4);
+    v->since.local -= v3_dot(d->local[0], path) + v3_dot(d->local[1], turn);
+    v->since.drag -= v3_dot(d->drag[0], path) + v3_dot(d->drag[1], turn);
 }
 
 static dem_vec3 unwrapped(const dem_world *w, size_t row)
@@ -219,17 +238,24 @@ static void view_body(dem_world *w, size_t i)
     const double *inertia = w->bodies.inertia + DEM_ROW * row, *p = w->bodies.momentum + DEM_ROW * row;
     const dem_template *t = &w->templates.items[w->bodies.shape[row]];
     double half = w->last_step / 2;
-    dem_vec3 weight = v3_scale(w->gravity, inertia[5]), force = v3_add(v->force[i], weight), moment = v->moment[i];
-    if (w->damping.local > 0 || w->damping.viscous > 0)
-        add_damping(w, row, weight, &force, &moment);
+    dem_vec3 weight = v3_scale(w->gravity, inertia[5]), load[2] = {v3_add(v->force[i], weight), v->moment[i]};
+    bool damped = w->damping.local > 0 || w->damping.viscous > 0;
+    damping d;
+    if (damped) {
+        d = damping_of(w, row, weight, load);
+        for (int k = 0; k < 2; k++)
+            load[k] = v3_add(load[k], v3_add(d.local[k], d.drag[k]));
+    }
     v->shape[i] = w->bodies.shape[row];
     v->scale[i] = body_scale(&w->bodies, row);
     v->mass[i] = inertia[5];
     v->position[i] = wrapped(w, body_position(&w->bodies, row));
     v->orientation[i] = template_principal_orientation(t, body_orientation(&w->bodies, row));
-    v->velocity[i] = v3_scale(v3_along(v3(p[0], p[1], p[2]), half, force), inertia[0]);
-    dem_vec3 momentum = v3_along(v3(p[3], p[4], p[5]), half, moment);
+    v->velocity[i] = v3_scale(v3_along(v3(p[0], p[1], p[2]), half, load[0]), inertia[0]);
+    dem_vec3 momentum = v3_along(v3(p[3], p[4], p[5]), half, load[1]);
     v->spin[i] = dem_body_spin(&w->bodies, row, momentum);
+    if (damped && w->ledger)
+        note_damping(w, i, &d);
     dem_energy *e = &v->figures.energy;
     e->kinetic += v3_norm2(v->velocity[i]) * inertia[5] / 2;
     e->rotational += v3_dot(momentum, v->spin[i]) / 2;
@@ -283,7 +309,8 @@ static double lanes(const double lane[DEM_BLOCK_LANES])
 
 dem_energy dem_ledger(const dem_world *w)
 {
-    dem_energy e = {.work = w->push_work};
+    dem_energy e = w->views.since;
+    e.work += w->push_work;
     for (size_t i = 0; i < w->segment_count * (1 + DEM_WALL_FORMS); i++) {
         e.friction += lanes(w->tallies[i].friction);
         e.viscous += lanes(w->tallies[i].viscous);
@@ -301,20 +328,22 @@ static void balance(dem_world *w)
     dem_energy *e = &w->views.figures.energy, spent = dem_ledger(w);
     e->elastic = w->views.elastic;
     double now = e->kinetic + e->rotational + e->potential + e->elastic;
-    if (w->steps == 0)
-        w->energy_start = now;
+    double gone = spent.friction + spent.viscous + spent.local + spent.drag - spent.work;
+    if (w->steps == 0) {
+        // a spring that the first sight of a sliding contact puts in is no energy that was there
+        w->energy_start = now + gone;
+        w->potential_start = e->potential;
+    }
     e->start = w->energy_start;
     e->friction = spent.friction;
     e->viscous = spent.viscous;
     e->local = spent.local;
     e->drag = spent.drag;
     e->work = spent.work;
-    if (w->steps == 0)
-        w->potential_start = e->potential;
     double most = fmax(fmax(e->kinetic + e->rotational, e->elastic), fabs(e->potential - w->potential_start));
     most = fmax(most, fmax(fabs(e->work), e->friction + e->viscous + e->local + e->drag));
     w->views.most_energy = fmax(w->views.most_energy, most);
-    double off = now + e->friction + e->viscous + e->local + e->drag - e->work - e->start;
+    double off = now + gone - e->start;
     e->error = NAN;
     if (w->ledger || !(w->laws.damped || w->features.friction))
         e->error = w->views.most_energy > 0 ? off / w->views.most_energy : 0;
@@ -335,6 +364,7 @@ dem_status dem_world_measure(dem_world *w, dem_error *error)
     size_t n = w->bodies.count;
     v->figures = (dem_figures){.time = dem_world_time(w), .step = w->steps};
     v->elastic = 0;
+    v->since = (dem_energy){0};
     v->contact_count = 0;
     memset(v->force, 0, n * sizeof *v->force);
     memset(v->moment, 0, n * sizeof *v->moment);

@@ -3,7 +3,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "sim/state.h"
+#include "sim/contacts.h"
 
 static const double LOOK_AROUND = 0.5; // of the bounding radius: how far triangles are asked for, at least
 
@@ -130,26 +130,6 @@ bool dem_mesh_touch_remember(const dem_mesh_touches *old, dem_mesh_touches *t, s
 
 // ---- in each step
 
-typedef struct slot_history {
-    double spring[3], loss;
-} slot_history;
-
-static slot_history get_history(const dem_contact_columns *c, size_t at)
-{
-    slot_history h = {.loss = c->loss ? c->loss[at] : 0};
-    for (int k = 0; c->spring[0] && k < 3; k++)
-        h.spring[k] = c->spring[k][at];
-    return h;
-}
-
-static void put_history(const dem_contact_columns *c, size_t at, const slot_history *h)
-{
-    for (int k = 0; c->spring[0] && k < 3; k++)
-        c->spring[k][at] = h->spring[k];
-    if (c->loss)
-        c->loss[at] = h->loss;
-}
-
 static void put_geometry(const dem_contact_columns *c, size_t at, dem_vec3 normal, double overlap, dem_vec3 arm)
 {
     double g[7] = {normal.x, normal.y, normal.z, overlap, arm.x, arm.y, arm.z};
@@ -162,13 +142,13 @@ static void hand_over(const dem_contact_columns *c, const dem_segment *s, dem_me
                       const dem_mesh_contact *contacts, int count, double reach)
 {
     int from[DEM_MESH_CONTACTS];
-    slot_history old[DEM_MESH_CONTACTS], none = {0};
+    dem_contact_history old[DEM_MESH_CONTACTS], none = {0};
     dem_mesh_contacts_follow(t->last + touch->slot, (int)touch->last_count, contacts, count, reach, from);
     for (uint32_t k = 0; k < touch->slot_count; k++)
-        old[k] = get_history(c, segment_place(s, touch->slot + k));
+        old[k] = dem_history_get(c, segment_place(s, touch->slot + k));
     for (uint32_t k = 0; k < touch->slot_count; k++) {
         bool goes_on = (int)k < count && from[k] >= 0;
-        put_history(c, segment_place(s, touch->slot + k), goes_on ? &old[from[k]] : &none);
+        dem_history_put(c, segment_place(s, touch->slot + k), goes_on ? &old[from[k]] : &none);
     }
     for (int k = 0; k < count; k++)
         t->last[touch->slot + (uint32_t)k] = contacts[k];

@@ -122,6 +122,7 @@ typedef struct dem_views {
     dem_contact_record *records;
     size_t record_capacity;
     double elastic;
+    dem_energy since;   ///< dissipated and done by now, but not in the tallies yet [J]
     double most_energy; ///< largest of kinetic, elastic and change of potential energy seen [J]
 } dem_views;
 
@@ -160,13 +161,12 @@ struct dem_world {
     dem_mesh_touches *mesh_touches; ///< [segments]
     dem_walls walls;
     size_t segment_count;
-    uint64_t steps, epoch_steps; ///< the time is epoch_time + (steps - epoch_steps) next_step
-    double epoch_time, last_step, next_step;
-    double wall_path;                 ///< what sweeping walls add to paths [m]
-    double sweep_speed;               ///< of sweeping walls about the bodies, at most [m/s]
-    bool started;                     ///< momenta have been taken half a step back
-    dem_tally *tallies;               ///< [segments * (1 + DEM_WALL_FORMS)]
-    dem_motion_tally *motion_tallies; ///< [segments]
+    uint64_t steps, epoch_steps;             ///< the time is epoch_time + (steps - epoch_steps) next_step
+    double epoch_time, last_step, next_step; ///< last_step: 0 at the start, where the momenta are of the poses' time
+    double wall_path;                        ///< what sweeping walls add to paths [m]
+    double sweep_speed;                      ///< of sweeping walls about the bodies, at most [m/s]
+    dem_tally *tallies;                      ///< [segments * (1 + DEM_WALL_FORMS)]
+    dem_motion_tally *motion_tallies;        ///< [segments]
     double push_work;
     double stable_step, crude_then; ///< the bound, and its cheap twin, when last looked at
     double damping_most;            ///< largest c / k of any contact so far [s]

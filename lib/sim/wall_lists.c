@@ -104,9 +104,7 @@ static void take_springs(const dem_contacts *contacts, const dem_segment *s, siz
         }
         if (k == end || c->sphere_a[at] != item->sphere_a || c->sphere_b[at] != item->sphere_b)
             continue;
-        dem_contact_item old = dem_contact_get(c, at);
-        memcpy(item->spring, old.spring, sizeof item->spring);
-        item->loss = old.loss;
+        item->history = dem_history_get(c, at);
         k++;
     }
 }

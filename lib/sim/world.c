@@ -141,31 +141,10 @@ static dem_status make_state(dem_world *w, const dem_scene *scene, dem_error *er
     // good enough for the margins of the first lists
     w->next_step = w->last_step = w->time_def.step > 0 ? w->time_def.step : dem_step_guess(w);
     DEM_TRY(dem_lists_update(w, error));
-    return dem_step_choose(w, error);
-}
-
-// momenta of the positions' time to those half a step before
-static dem_status start(dem_world *w, dem_error *error)
-{
+    DEM_TRY(dem_step_choose(w, error));
+    // the first step kicks for half of it, which takes the momenta from the time of the positions
     w->last_step = 0;
-    DEM_TRY(dem_world_measure(w, error));
-    w->last_step = w->next_step;
-    for (size_t i = 0; i < w->bodies.count; i++) {
-        size_t row = w->bodies.place[i];
-        double *p = w->bodies.momentum + DEM_ROW * row, *motion = body_pose(&w->bodies, row) + 8;
-        double m = w->bodies.inertia[DEM_ROW * row + 5], half = w->next_step / 2;
-        dem_vec3 f = v3_along(w->views.force[i], m, w->gravity), t = w->views.moment[i];
-        double impulse[6] = {f.x, f.y, f.z, t.x, t.y, t.z};
-        for (int k = 0; k < 6; k++)
-            p[k] -= half * impulse[k];
-        for (int k = 0; k < 3; k++)
-            motion[k] = p[k] * w->bodies.inertia[DEM_ROW * row];
-        dem_vec3 spin = dem_body_spin(&w->bodies, row, v3(p[3], p[4], p[5]));
-        motion[3] = spin.x;
-        motion[4] = spin.y;
-        motion[5] = spin.z;
-    }
-    return dem_world_measure(w, error);
+    return DEM_OK;
 }
 
 dem_status dem_world_create(const dem_ctx *ctx, const dem_scene *scene, dem_world **world, dem_error *error)
@@ -188,7 +167,7 @@ dem_status dem_world_create(const dem_ctx *ctx, const dem_scene *scene, dem_worl
         w->clocks[i].name = pass_names[i];
     dem_status status = make_state(w, scene, error);
     if (status == DEM_OK)
-        status = start(w, error);
+        status = dem_world_measure(w, error);
     dem_world_reset_clocks(w);
     if (status != DEM_OK) {
         dem_world_destroy(w);

@@ -1,7 +1,8 @@
 /// Worlds: many clumps as rigid bodies, taken through time by full 6-DOF central differences.
 ///
-/// Between steps a world holds positions and orientations at time t and momenta half a step before it. Everything the
-/// views show is brought to time t by one evaluation of the contacts (dem_world_measure), which changes nothing.
+/// Between steps a world holds positions and orientations at time t and momenta half a step before it; at the
+/// start momenta are of the same time, and the first step kicks for half of it. Everything the views show is brought to
+/// time t by one evaluation of the contacts (dem_world_measure), which changes nothing.
 #ifndef DEM_WORLD_H
 #define DEM_WORLD_H
 

@@ -51,8 +51,8 @@ DEM_INLINE wide3 spring_turn(wide3 spring, wide3 n, wide turn)
 typedef struct friction_law {
     wide3 force;  ///< on the first body [N]
     wide3 spring; ///< its length afterwards [m]
+    wide3 dash;   ///< what of the force is not the spring's [N] (ledger)
     wide lost;    ///< dissipated by sliding since the last step [J] (ledger)
-    wide damped;  ///< by the dashpot [J] (ledger)
 } friction_law;
 
 /// `spring` has been turned; `slip` is the tangential velocity of the second surface over the first [m/s], `vn` that
@@ -93,20 +93,16 @@ DEM_INLINE friction_law friction(const dem_features f, const wide *law, const no
     }
     force = select3(slides, capped, force);
     spring = select3(slides, scale3(left, per_stiffness), spring);
-    friction_law result = {or_zero3(on, force), or_zero3(on, spring), zero, zero};
+    wide3 none = {zero, zero, zero};
+    friction_law result = {or_zero3(on, force), or_zero3(on, spring), none, zero};
     if (f.ledger) {
-        // work of the mean force over the slip, less what the spring holds more than before. A dashpot's force at the
-        // last step is not kept: its share of the work is a quarter of it then and three quarters now.
+        // work of the mean force over the slip, less what the spring holds more than before
         wide3 both = along3(scale3(result.spring, stiffness), old_stiffness, start);
         wide held = stiffness * dot3(result.spring, result.spring) - old_stiffness * dot3(start, start);
         result.lost = wide_all(0.5) * (step * dot3(both, slip) - held);
-        if (f.slide_damping) {
-            // while sliding, the dashpot has only what the cap leaves to it
-            wide was = wide_or_zero(wide_less(zero, dot3(start, start)), wide_all(0.25));
-            wide now = dot3(along3(force, zero - stiffness, spring), slip);
-            wide last = wide_select(on, now, damping * dot3(slip, slip));
-            result.damped = step * (wide_or_zero(on, wide_all(0.75) * now) + was * last);
-        }
+        // while sliding, the dashpot has only what the cap leaves to it
+        if (f.slide_damping)
+            result.dash = or_zero3(on, along3(force, zero - stiffness, spring));
     }
     return result;
 }
