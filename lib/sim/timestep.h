@@ -7,16 +7,21 @@
 /// an estimate.
 ///
 /// Accuracy: an automatic step also takes the shortest contact in a number of steps (`contact_steps`).
+///
+/// An automatic step is watched in every step: the contact loop sums for each body what its touching contacts take at
+/// most, its *strain*, sum of (h^2 k + 2 h c) / m_least. Only where that exceeds what the body was allowed, its own
+/// problem is solved, and the step lowered where that is due. From time to time all bodies are asked whether it may be
+/// raised.
 #ifndef DEM_SIM_TIMESTEP_H
 #define DEM_SIM_TIMESTEP_H
 
 #include "sim/state.h"
 
 typedef struct dem_step_bound {
-    double eigenvalue;    ///< of M^-1 K, of the body that sets the bound [1/s^2]
-    double damping;       ///< of M^-1 C, of the same body [1/s]
-    double step;          ///< the limit [s]; INFINITY without contacts
-    size_t row;           ///< that body
+    double eigenvalue; ///< of M^-1 K, of the body that sets the bound [1/s^2]
+    double damping;    ///< of M^-1 C, of the same body [1/s]
+    double step;       ///< the limit [s]; INFINITY without contacts
+    size_t row;        ///< that body
 } dem_step_bound;
 
 /// The bound for the contacts that touch, or for all that are listed and may do so before the lists change.
@@ -31,7 +36,7 @@ double dem_step_guess(const dem_world *world);
 /// Sets the first step, now that contacts are listed.
 dem_status dem_step_choose(dem_world *world, dem_error *error);
 
-/// Looks at an automatic step again from time to time.
+/// Takes up the strained bodies of the last step; looks at an automatic step again from time to time.
 dem_status dem_step_review(dem_world *world, dem_error *error);
 
 /// Largest eigenvalue of a symmetric matrix (cyclic Jacobi); destroys it.
