@@ -15,7 +15,7 @@ struct dem_size_segment {
 typedef struct dem_size_segment segment;
 
 enum { NORMAL_SEGMENTS = 4096 };
-// in standard deviations; beyond are 1e-16 of a normal law
+// in standard deviations; 1e-16 of a normal law lies beyond
 static const double WIDEST = 8.3;
 
 static dem_status refuse(dem_error *error, const char *what)
@@ -57,8 +57,9 @@ static double deviation_of(const dem_size_def *def, double median, double d)
 
 static void add_normal(dem_sizes *s, const dem_size_def *def, double median)
 {
-    double from = fmax(deviation_of(def, median, def->smallest), -WIDEST);
-    double to = fmin(deviation_of(def, median, def->largest), WIDEST);
+    double lowest = deviation_of(def, median, def->smallest), highest = deviation_of(def, median, def->largest);
+    // limits in a tail leave what lies next to them
+    double from = fmax(lowest, fmin(-WIDEST, highest - WIDEST)), to = fmin(highest, fmax(WIDEST, lowest + WIDEST));
     double before = from, low = at_deviation(def, median, from);
     for (int i = 1; i <= NORMAL_SEGMENTS && from < to; i++) {
         double z = from + (to - from) * i / NORMAL_SEGMENTS, high = at_deviation(def, median, z);

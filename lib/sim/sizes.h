@@ -2,7 +2,8 @@
 ///
 /// Every law becomes a curve of segments with a share of the number of bodies each. In a segment the density of the
 /// number (or, for a law by mass, of the mass) over the diameter is uniform: a grading curve is followed by straight
-/// lines between its points, the uniform law is exact, the normal laws are within 1e-6 of their distribution.
+/// lines between its points, the uniform law is exact, the normal laws are within 1e-6 of their distribution (1e-4
+/// where the limits leave but a tail).
 #ifndef DEM_SIM_SIZES_H
 #define DEM_SIM_SIZES_H
 
