@@ -19,7 +19,7 @@
 typedef struct dem_fill_shape {
     const dem_ball *balls;
     size_t ball_count;
-    double mass;                 ///< [kg]; counts in shares by mass only
+    double mass;                 ///< [kg], for shares by mass
     double volume;               ///< of the grain [m^3]
     double equivalent_diameter;  ///< of the sphere with this volume [m]
     double radius_out;           ///< of the smallest sphere about the centre that holds all balls [m]

@@ -18,7 +18,6 @@ typedef struct entry {
     size_t most;    // bodies
     double offset;  // of the sequence of its sizes
     size_t drawn;
-    bool as_is;
 } entry;
 
 double dem_fill_box_volume(const dem_fill_def *fill)
@@ -35,7 +34,8 @@ static dem_status check_entry(const dem_mix_def *mix, size_t at, const dem_fill_
                         (unsigned long)mix->shape, shape_count);
     if (!(mix->share >= 0 && isfinite(mix->share)))
         return dem_fail(error, DEM_USAGE, "fill: the share of mix[%zu] must be positive", at);
-    DEM_ASSERT(shapes[mix->shape].equivalent_diameter > 0);
+    const dem_fill_shape *shape = &shapes[mix->shape];
+    DEM_ASSERT(shape->ball_count > 0 && shape->equivalent_diameter > 0 && shape->volume > 0 && shape->mass > 0);
     return DEM_OK;
 }
 
@@ -58,7 +58,6 @@ static dem_status make_entries(const dem_fill_def *fill, const dem_fill_shape *s
         entries[i].share = mix->share / total;
         entries[i].most = mix->share > 0 ? SIZE_MAX : 0;
         entries[i].offset = random_uniform(&r);
-        entries[i].as_is = mix->size.law == DEM_SIZE_AS_IS;
         DEM_TRY(dem_sizes_create(&mix->size, shape->equivalent_diameter, &entries[i].sizes, error));
     }
     return DEM_OK;
@@ -102,7 +101,7 @@ static dem_fill_draw draw(entry *e)
     const double golden = 0.61803398874989485;
     double u = e->offset + golden * (double)e->drawn++;
     double diameter = dem_sizes_draw(&e->sizes, u - floor(u));
-    return (dem_fill_draw){e->shape_index, e->as_is ? 1 : diameter / e->shape->equivalent_diameter};
+    return (dem_fill_draw){e->shape_index, diameter / e->shape->equivalent_diameter};
 }
 
 static double cube(double x)
