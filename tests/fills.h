@@ -77,11 +77,15 @@ static inline double body_gap(const dem_body_def *a, const dem_body_def *b, dem_
     if (v3_distance(a->position, moved.position) - radius_out(a) - radius_out(b) > limit)
         return limit;
     double least = limit;
-    for (size_t i = 0; i < fill_shapes()[a->shape].ball_count; i++)
+    for (size_t i = 0; i < fill_shapes()[a->shape].ball_count; i++) {
+        dem_ball p = body_ball(a, i);
+        if (v3_distance(p.centre, moved.position) - p.radius - radius_out(b) > limit)
+            continue;
         for (size_t j = 0; j < fill_shapes()[b->shape].ball_count; j++) {
-            dem_ball p = body_ball(a, i), q = body_ball(&moved, j);
+            dem_ball q = body_ball(&moved, j);
             least = fmin(least, v3_distance(p.centre, q.centre) - p.radius - q.radius);
         }
+    }
     return least;
 }
 

@@ -326,6 +326,22 @@ static void positions_are_uniform(void **state)
     free(f.bodies);
 }
 
+static void a_box_may_be_no_thicker_than_a_body(void **state)
+{
+    (void)state;
+    // a layer of balls so wide that cells of their size would be many
+    dem_mix_def mix = {0, 1, AS_IS};
+    dem_fill_def fill = {.mix = &mix, .mix_count = 1, .high = {20e-3, 20e-3, 1.0001e-3}, .count = 180, .gap = 1e-5};
+    filled f = fill_up(&fill, NULL);
+    check_clear(f, &fill, NULL);
+    free(f.bodies);
+    dem_mix_def fine = {0, 1, {.law = DEM_SIZE_FIXED, .a = 1e-6, .largest = INFINITY}};
+    fill = (dem_fill_def){.mix = &fine, .mix_count = 1, .high = {1, 1, 0.9e-6}, .count = 1};
+    dem_body_def *bodies;
+    size_t count;
+    check(dem_fill(NULL, &fill, fill_shapes(), FILL_SHAPES, NULL, &bodies, &count, NULL) == DEM_FAILED);
+}
+
 static void the_order_tells_neither_size_nor_place(void **state)
 {
     (void)state;
@@ -509,6 +525,10 @@ static void unusable_fills_are_refused_with_the_reason(void **state)
     dem_domain_def domain = {{0, 0, 0}, {4e-3, 4e-3, 3.9e-3}, {true, true, true}, 0};
     dem_fill_obstacles there = {.domain = &domain};
     check(strstr(refused(&good, &there, DEM_USAGE).text, "the box reaches out of the domain along z"));
+    // endless on one side
+    domain.periodic[2] = false;
+    domain.low.z = -INFINITY;
+    check(strstr(refused(&good, &there, DEM_USAGE).text, "the box reaches out of the domain along z"));
 }
 
 static int calls, stop_at;
@@ -592,6 +612,7 @@ int main(void)
         cmocka_unit_test(sizes_are_those_of_the_law),
         cmocka_unit_test(orientations_are_uniform),
         cmocka_unit_test(positions_are_uniform),
+        cmocka_unit_test(a_box_may_be_no_thicker_than_a_body),
         cmocka_unit_test(the_order_tells_neither_size_nor_place),
         cmocka_unit_test(the_seed_alone_makes_the_difference),
         cmocka_unit_test(sizes_may_differ_by_a_hundred),

@@ -9,7 +9,9 @@
 static dem_status check_domain(const dem_room *room, const dem_domain_def *domain, dem_error *error)
 {
     for (int k = 0; k < 3; k++) {
-        double low = v3_get(domain->low, k), high = v3_get(domain->high, k), slack = 1e-9 * (high - low);
+        double low = v3_get(domain->low, k), high = v3_get(domain->high, k);
+        // a domain may be endless
+        double slack = 1e-9 * (v3_get(room->high, k) - v3_get(room->low, k));
         if (v3_get(room->low, k) < low - slack || v3_get(room->high, k) > high + slack)
             return dem_fail(error, DEM_USAGE, "fill: the box reaches out of the domain along %c; make it smaller",
                             "xyz"[k]);

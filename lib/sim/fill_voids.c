@@ -62,25 +62,38 @@ static double least_core(dem_filling *f)
     return core;
 }
 
+// sets the edge of the cells that cover this, and how many there are along each axis
+static void set_cells(dem_filling *f, voids *v, const double extent[3], int32_t n[3])
+{
+    double all;
+    v->size = 0.6 * fmax(v->core, 0.3 * f->trial.radius);
+    do {
+        all = 1;
+        for (int k = 0; k < 3; k++) {
+            double along = floor(extent[k] / v->size) + 1;
+            n[k] = (int32_t)fmin(along, MOST_CELLS);
+            all *= along;
+        }
+        v->size *= all > MOST_CELLS ? 1.1 : 1;
+    } while (all > MOST_CELLS);
+}
+
 // cells over everything where the centre of such a body may be
 static dem_filled make_voids(dem_filling *f, voids *v)
 {
     const dem_room *room = f->room;
     v->core = least_core(f);
-    double extent[3], volume = 1;
+    double extent[3];
+    int32_t n[3];
     v->origin = room->low;
     for (int k = 0; k < 3; k++) {
         double margin = room->spans[k] ? 0 : v->core;
         v3_set(&v->origin, k, v3_get(room->low, k) + margin);
         extent[k] = fmax(v3_get(room->high, k) - v3_get(room->low, k) - 2 * margin, 0);
-        volume *= extent[k];
     }
-    v->size = fmax(0.6 * fmax(v->core, 0.3 * f->trial.radius), cbrt(volume / MOST_CELLS));
+    set_cells(f, v, extent, n);
     v->smallest = 0.01 * f->trial.radius;
     v->count = v->missed = 0;
-    int32_t n[3];
-    for (int k = 0; k < 3; k++)
-        n[k] = (int32_t)fmin(floor(extent[k] / v->size) + 1, MOST_CELLS);
     for (int32_t z = 0; z < n[2]; z++)
         for (int32_t y = 0; y < n[1]; y++)
             for (int32_t x = 0; x < n[0]; x++) {
