@@ -214,17 +214,18 @@ static dem_status refuse(const work *w, dem_error *error)
 // in the order they were drawn
 static dem_status hand_over(work *w, dem_body_def **bodies, dem_error *error)
 {
-    *bodies = dem_alloc(w->f.count, sizeof **bodies);
+    // member by member, so that equal fills are equal bytes
+    *bodies = dem_alloc_zero(w->f.count, sizeof **bodies);
     if (!*bodies)
         return dem_fail_memory(error);
     for (size_t i = 0; i < w->f.count; i++) {
         const dem_room_body *b = &w->room.bodies[w->held[i]];
-        uint32_t draw = w->order[i];
-        (*bodies)[draw] = (dem_body_def){.shape = b->shape,
-                                         .scale = w->draws[draw].scale,
-                                         .position = b->position,
-                                         .orientation = w->room.poses[w->held[i]].orientation,
-                                         .velocity = w->f.fill->velocity};
+        dem_body_def *body = &(*bodies)[w->order[i]];
+        body->shape = b->shape;
+        body->scale = w->draws[w->order[i]].scale;
+        body->position = b->position;
+        body->orientation = w->room.poses[w->held[i]].orientation;
+        body->velocity = w->f.fill->velocity;
     }
     return DEM_OK;
 }
