@@ -9,6 +9,10 @@
 #include "sim/restitution.h"
 #include "sim/scene.h"
 
+// A dashpot that cannot pull gives no restitution of 0, and near 0 the step would have to be very small: this one
+// leaves a hundredth of the speed, at twice the critical damping.
+static const double LEAST_RESTITUTION = 0.01;
+
 static const char *name_of(const dem_scene *scene, uint32_t material)
 {
     return scene->materials[material].name ? scene->materials[material].name : "";
@@ -63,7 +67,8 @@ static void fill_damping(const dem_pair_law *law, double *row, dem_features *nee
         row[LAW_RATE] = law->damping_rate;
         needs->rate = true;
     } else if (law->damping == DEM_DAMPING_RESTITUTION && law->restitution < 1) {
-        zeta = cut ? dem_damping_ratio_cut(law->restitution) : dem_damping_ratio(law->restitution);
+        zeta = cut ? dem_damping_ratio_cut(fmax(law->restitution, LEAST_RESTITUTION))
+                   : dem_damping_ratio(law->restitution);
         row[LAW_ZETA] = 2 * zeta * (law->normal == DEM_NORMAL_HERTZ ? sqrt(5.0 / 6) : 1);
         needs->restitution = true;
     } else
