@@ -88,7 +88,10 @@ static dem_status fill_friction(const dem_scene *scene, const dem_pair_law *law,
         double young, shear;
         if (law->normal != DEM_NORMAL_HERTZ ||
             !moduli(&scene->materials[law->materials[0]], &scene->materials[law->materials[1]], &young, &shear))
-            return refuse(scene, law, "has Mindlin's friction, which needs the normal law of Hertz", error);
+            return refuse(scene, law,
+                          "has Mindlin's friction, which needs the normal law of Hertz; take \"hertz\" with it, or "
+                          "friction \"linear\"",
+                          error);
         row[LAW_SLIDE_HERTZ] = 8 * shear;
         row[LAW_KEEP_LEAST] = 0;
         row[LAW_KEEP_MOST] = law->rescale ? 1 : INFINITY;
