@@ -15,18 +15,6 @@
 
 #include "dem/dem.h"
 
-// sanitizers make everything 5 to 10 times slower: long tests are kept short there
-#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
-#define SANITIZED 1
-#elif defined(__has_feature)
-#if __has_feature(address_sanitizer) || __has_feature(thread_sanitizer)
-#define SANITIZED 1
-#endif
-#endif
-#ifndef SANITIZED
-#define SANITIZED 0
-#endif
-
 static inline void check_near_(double got, double want, double tolerance, const char *what, const char *file, int line)
 {
     if (!(fabs(got - want) <= tolerance)) {

@@ -10,7 +10,7 @@
 #include "reference.h"
 
 static const double STIFF = 1e10;                     ///< times the modulus: overlaps are 1e-4 of what they were
-static const double STEPS = SANITIZED ? 2000 : 20000; ///< in the elastic contact; the reference has 20000
+static const double STEPS = SLOW_BUILD ? 2000 : 20000; ///< in the elastic contact; the reference has 20000
 
 static const dem_material GLASS = {"glass", 2800, 48e9, 0.2}, LIMESTONE = {"limestone", 2500, 20e9, 0.25};
 static const dem_material STEEL = {"steel", 7850, 208e9, 0.3}, POLYETHYLENE = {"polyethylene", 1400, 1e9, 0.4};

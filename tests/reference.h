@@ -4,7 +4,7 @@
 
 #include "check.h"
 
-#define REFERENCE(name) DEM_SOURCE_DIR "/../shared/refdata/" name ".csv"
+#define REFERENCE(name) SHARED_DATA(name ".csv")
 
 enum { REFERENCE_ROWS = 64, REFERENCE_COLUMNS = 10 };
 

@@ -104,7 +104,7 @@ static void check_column_(const reference *r, int column, const double *got, dou
 // five to six digits are printed; with the modulus asked for overlap / R comes on top, and with fewer steps their error
 static double tolerance_of(const impact *c, bool stiff)
 {
-    return (SANITIZED ? 1e-2 : 5e-6) + (stiff ? 0 : 4 * overlap_share(c));
+    return (SLOW_BUILD ? 1e-2 : 5e-6) + (stiff ? 0 : 4 * overlap_share(c));
 }
 
 static void test_4_oblique_impacts_follow_the_curve(void **state)
