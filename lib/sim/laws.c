@@ -76,6 +76,15 @@ static void fill_damping(const dem_pair_law *law, double *row, dem_features *nee
     needs->cut |= cut;
 }
 
+// k_t = modulus * contact radius; the spring must not get force, and so energy, from a normal force that grows
+static void grow_with_radius(const dem_pair_law *law, double *row, double modulus, dem_features *needs)
+{
+    row[LAW_SLIDE_HERTZ] = modulus;
+    row[LAW_KEEP_LEAST] = 0;
+    row[LAW_KEEP_MOST] = law->rescale ? 1 : INFINITY;
+    needs->mindlin = true;
+}
+
 static dem_status fill_friction(const dem_scene *scene, const dem_pair_law *law, double *row, dem_features *needs,
                                 dem_error *error)
 {
@@ -92,12 +101,11 @@ static dem_status fill_friction(const dem_scene *scene, const dem_pair_law *law,
                           "has Mindlin's friction, which needs the normal law of Hertz; take \"hertz\" with it, or "
                           "friction \"linear\"",
                           error);
-        row[LAW_SLIDE_HERTZ] = 8 * shear;
-        row[LAW_KEEP_LEAST] = 0;
-        row[LAW_KEEP_MOST] = law->rescale ? 1 : INFINITY;
-        needs->mindlin = true;
+        grow_with_radius(law, row, 8 * shear, needs);
     } else if (law->tangential_stiffness > 0)
         row[LAW_SLIDE_STIFFNESS] = law->tangential_stiffness;
+    else if (law->normal == DEM_NORMAL_HERTZ)
+        grow_with_radius(law, row, law->stiffness_ratio * row[LAW_HERTZ], needs);
     else
         row[LAW_SLIDE_RATIO] = law->stiffness_ratio;
     if (law->tangential_rate > 0) {
