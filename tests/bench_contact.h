@@ -51,13 +51,13 @@ static inline void bench_step(bench *b, double step)
     memset(w->bodies.momentum, 0, w->bodies.padded * DEM_ROW * sizeof(double));
     for (size_t i = 0; i < w->segment_count; i++) {
         dem_segment *s = &w->contacts.segments[i];
-        dem_contact_job job = {w->contacts.columns, s->begin, s->end, step, 1, &w->tallies[i], NULL};
+        dem_contact_job job = {w->contacts.columns, s->begin, s->end, step, 1, step, &w->tallies[i], NULL};
         w->instance->pairs(w->features, &rows, &job);
         for (int form = 0; form < DEM_WALL_FORMS; form++)
             if (w->wall_contacts[form].segments) {
                 s = &w->wall_contacts[form].segments[i];
                 job =
-                    (dem_contact_job){w->wall_contacts[form].columns, s->begin, s->end, step, 1, &w->tallies[i], NULL};
+                    (dem_contact_job){w->wall_contacts[form].columns, s->begin, s->end, step, 1, step, &w->tallies[i], NULL};
                 w->instance->walls[form](w->features, &rows, &job);
             }
     }

@@ -313,7 +313,7 @@ static void momentum_and_angular_momentum_are_kept_to_the_last_bits(void **state
         touched += (double)measured(w)->contacts;
     }
     total_momentum(w, &p1, &l1);
-    check(touched > 100);
+    check(touched > 20);
     check_vec(p1, p0, 1e-12 * scale);
     check_vec(l1, l0, 1e-12 * scale * 0.1);
     dem_world_destroy(w);
