@@ -14,6 +14,10 @@ if(DEM_X86)
         # whole registers: by default gcc keeps to half of them
         target_compile_options(${kernels} PRIVATE -mprefer-vector-width=512)
       endif()
+      if(DEM_SANITIZE)
+        # instrumented, the loops take minutes to compile in full
+        target_compile_options(${kernels} PRIVATE -O1)
+      endif()
       target_link_libraries(${kernels} PRIVATE dem_flags OpenMP::OpenMP_C)
       # under sanitizers clang cannot make vector code of all loops it is asked to, and would stop at that
       target_compile_options(${kernels} PRIVATE $<$<C_COMPILER_ID:Clang>:-Wno-pass-failed>)

@@ -32,6 +32,7 @@ static dem_run_report sample(void)
                                                    .start = 7,
                                                    .error = 2e-4}},
                             .steps = 50000,
+                            .warmup = 10000,
                             .step = 1e-5,
                             .critical_step = 1.25e-5,
                             .loop_seconds = 4,

@@ -1,5 +1,8 @@
 #include "scenes.h"
 
+#include "base/random.h"
+#include "base/text.h"
+
 static void check_same_text(const char *a, const char *b)
 {
     if (strcmp(a, b) != 0)
@@ -7,12 +10,46 @@ static void check_same_text(const char *a, const char *b)
     check(strcmp(a, b) == 0);
 }
 
+static bool same(double a, double b)
+{
+    return a == b || (isnan(a) && isnan(b));
+}
+
+static void check_same_law(const dem_pair_law *a, const dem_pair_law *b)
+{
+    check(a->materials[0] == b->materials[0] && a->materials[1] == b->materials[1]);
+    check(a->effective_mass == b->effective_mass && a->normal == b->normal && same(a->stiffness, b->stiffness));
+    check(a->damping == b->damping && a->restitution == b->restitution && a->damping_rate == b->damping_rate);
+    check(a->tail == b->tail && a->friction == b->friction && a->friction_coefficient == b->friction_coefficient);
+    check(same(a->tangential_stiffness, b->tangential_stiffness) && same(a->tangential_rate, b->tangential_rate));
+    check(a->stiffness_ratio == b->stiffness_ratio && a->rescale == b->rescale);
+}
+
+static void check_same_fill(const dem_fill_def *a, const dem_fill_def *b)
+{
+    check(a->mix_count == b->mix_count && a->share_by_mass == b->share_by_mass && a->count == b->count);
+    check(a->void_ratio == b->void_ratio && a->gap == b->gap && a->seed == b->seed);
+    check_vec(a->low, b->low, 0);
+    check_vec(a->high, b->high, 0);
+    check_vec(a->velocity, b->velocity, 0);
+    for (size_t i = 0; i < a->mix_count; i++) {
+        const dem_mix_def *x = &a->mix[i], *y = &b->mix[i];
+        check(x->shape == y->shape && x->share == y->share && x->size.law == y->size.law);
+        check(x->size.a == y->size.a && x->size.b == y->size.b && x->size.by_mass == y->size.by_mass);
+        check(x->size.smallest == y->size.smallest && x->size.largest == y->size.largest);
+        check(x->size.table_count == y->size.table_count);
+        for (size_t k = 0; k < x->size.table_count; k++)
+            check(x->size.sizes[k] == y->size.sizes[k] && x->size.passing[k] == y->size.passing[k]);
+    }
+}
+
 // compares what the text cannot: numbers in every bit, clumps, meshes
 static void check_same_scene(const dem_scene *a, const dem_scene *b)
 {
     check(a->shape_count == b->shape_count && a->bodies.count == b->bodies.count && a->wall_count == b->wall_count);
     assert_memory_equal(&a->time, &b->time, sizeof a->time);
-    assert_memory_equal(&a->domain, &b->domain, sizeof a->domain);
+    assert_memory_equal(&a->domain, &b->domain, offsetof(dem_domain_def, periodic) + sizeof a->domain.periodic);
+    check(a->domain.leaving == b->domain.leaving && a->multiple == b->multiple);
     assert_memory_equal(&a->gravity, &b->gravity, sizeof a->gravity);
     for (size_t i = 0; i < a->shape_count; i++) {
         check(a->shapes[i].sphere_radius == b->shapes[i].sphere_radius &&
@@ -20,9 +57,11 @@ static void check_same_scene(const dem_scene *a, const dem_scene *b)
         check(!a->shapes[i].clump == !b->shapes[i].clump);
         check(!a->shapes[i].clump || dem_clump_hash(a->shapes[i].clump) == dem_clump_hash(b->shapes[i].clump));
     }
-    check(a->law_count == b->law_count);
+    check(a->law_count == b->law_count && a->bodies.fill_count == b->bodies.fill_count);
     for (size_t i = 0; i < a->law_count; i++)
-        check(a->laws[i].tail == b->laws[i].tail && a->laws[i].damping == b->laws[i].damping);
+        check_same_law(&a->laws[i], &b->laws[i]);
+    for (size_t i = 0; i < a->bodies.fill_count; i++)
+        check_same_fill(&a->bodies.fills[i], &b->bodies.fills[i]);
     for (size_t i = 0; i < a->bodies.count; i++)
         assert_memory_equal(&a->bodies.bodies[i].scale, &b->bodies.bodies[i].scale,
                             sizeof(dem_body_def) - offsetof(dem_body_def, scale));
@@ -90,6 +129,26 @@ static void a_resolved_scene_reads_back_as_the_same(void **state)
         " 'material': 'a'}, 't': {'spheres': [[5, 0, 0, 1], [5.1, 0.7, 0.3, 0.6], [4, 0, 0, 0.3]],\n"
         " 'material': 'b'}}}",
         NULL);
+}
+
+// directions and rotations are made unit once, and keep their bits from then on
+static void directions_keep_their_bits(void **state)
+{
+    (void)state;
+    dem_random r = random_stream(2, 0);
+    for (int i = 0; i < 50; i++) {
+        char text[1000], *start = text;
+        const char *form = "{" SCENE_HEAD ", 'walls': {'w': {'plane': {'point': [0, 0, 0], 'normal': [#, #, #]},"
+                           "'material': 'rock', 'motion': {'rotate': {'axis': [#, #, #], 'rate': #}}}},"
+                           "'bodies': [{'shape': 'ball', 'position': [0, 0, 0], 'orientation': [#, #, #, #]}]}";
+        for (const char *p = form; *p; p++)
+            if (*p == '#')
+                start += strlen(dem_format_double(start, 40, random_normal(&r), 17));
+            else
+                *start++ = *p;
+        *start = 0;
+        check_round_trip(text, NULL);
+    }
 }
 
 static void every_default_is_written(void **state)
@@ -169,6 +228,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(a_resolved_scene_reads_back_as_the_same),
+        cmocka_unit_test(directions_keep_their_bits),
         cmocka_unit_test(every_default_is_written),
         cmocka_unit_test(a_scene_made_by_hand_is_written_too),
     };

@@ -162,7 +162,7 @@ static void draw(cli_session *session, const char *what, double fraction)
     char left[48] = "";
     if (fraction > 0.02)
         snprintf(left, sizeof left, ", %.0f s left", spent * (1 - fraction) / fraction);
-    fprintf(stderr, "%s%s: %.40s %.0f %%, %.0f s%s%s", session->terminal ? "\r\033[K" : "", session->tool->name, what,
+    fprintf(stderr, "%s%s: %.60s %.0f %%, %.0f s%s%s", session->terminal ? "\r\033[K" : "", session->tool->name, what,
             100 * fraction, spent, left, session->terminal ? "" : "\n");
     fflush(stderr);
     session->line_shown = session->terminal;
@@ -173,8 +173,11 @@ static bool on_progress(void *user, const char *what, double fraction)
     cli_session *session = user;
     if (session->jobs > 1 || pthread_mutex_trylock(&session->lock) != 0)
         return stop_asked;
-    // a new phase, or the old one over again: the clock of "time left" starts again
-    if (fraction < session->last_fraction || strncmp(session->phase, what, sizeof session->phase - 1) != 0)
+    // a new phase, or the old one over again: the clock of "time left" starts again. A phase is named by what stands
+    // before the first comma
+    size_t name = strcspn(what, ",");
+    name = name < sizeof session->phase - 1 ? name : sizeof session->phase - 1;
+    if (fraction < session->last_fraction || strncmp(session->phase, what, name) != 0)
         session->phase_begin = now();
     snprintf(session->phase, sizeof session->phase, "%s", what);
     session->last_fraction = fraction;

@@ -86,6 +86,7 @@ static dem_run_report report_of(const cli_session *session, const dem_scene *sce
                             .ended = r->stopped ? r->stopped : "done",
                             .figures = r->figures,
                             .steps = r->timed_steps,
+                            .warmup = r->warmup,
                             .step = r->step,
                             .critical_step = r->critical_step,
                             .loop_seconds = r->loop_seconds,

@@ -142,7 +142,9 @@ dem_status dem_quantity(const char *text, dem_dimension dimension, double *value
     double factor = 1;
     if (rest < end)
         DEM_TRY(find_unit(rest, (size_t)(end - rest), dimension, &factor, error));
-    *value = number * factor;
+    // 20 us is 20 / 1e6, rounded once; 1e-6 is not a number of the machine
+    double parts = round(1 / factor);
+    *value = factor < 1 && fabs(parts * factor - 1) < 1e-12 ? number / parts : number * factor;
     return DEM_OK;
 }
 

@@ -66,19 +66,8 @@ static dem_camera choose_camera(dem_sym3 spread)
     return (dem_camera){.forward = v3_scale(eye, -1), .up = up, .margin = MARGIN};
 }
 
-// OKLCh (Ottosson 2020) to linear light; `hue` in turns
-static dem_colour from_lch(double lightness, double chroma, double hue)
-{
-    double a = chroma * cos(2 * DEM_PI * hue), b = chroma * sin(2 * DEM_PI * hue);
-    double l = pow(lightness + 0.3963377774 * a + 0.2158037573 * b, 3);
-    double m = pow(lightness - 0.1055613458 * a - 0.0638541728 * b, 3);
-    double s = pow(lightness - 0.0894841775 * a - 1.2914855480 * b, 3);
-    return (dem_colour){(float)(4.0767416621 * l - 3.3077115913 * m + 0.2309699292 * s),
-                        (float)(-1.2684380046 * l + 2.6097574011 * m - 0.3413193965 * s),
-                        (float)(-0.0041960863 * l - 0.7034186147 * m + 1.7076147010 * s)};
-}
-
-// every ball takes, some times over, the hue it has the shortest seams with, on the surface (arcs are listed ball by ball)
+// every ball takes, some times over, the hue it has the shortest seams with, on the surface (arcs are listed ball by
+// ball)
 static void choose_hues(int *hues, size_t count, const dem_ball *balls, const dem_ball_union *seams)
 {
     size_t end = 0;
@@ -113,7 +102,7 @@ static dem_status colour_balls(const dem_ball *balls, size_t count, dem_colour *
             hues[i] = -1;
         choose_hues(hues, count, balls, &seams);
         for (size_t i = 0; i < count; i++)
-            colours[i] = from_lch(0.74, 0.07, turns[hues[i]]);
+            colours[i] = dem_colour_lch(0.74, 0.07, turns[hues[i]]);
     }
     free(hues);
     dem_ball_union_release(&seams);

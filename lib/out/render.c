@@ -37,6 +37,7 @@ typedef struct patch {
 typedef struct cell {
     patch patches[PATCHES];
     int count, weight;  // a weight more than the patches have is sky
+    dem_veil veil;      // of all samples together; key: of the first one
 } cell;
 
 typedef struct tile {
@@ -57,11 +58,23 @@ static bool same_surface(const dem_stage *s, const dem_spot *a, const dem_spot *
     return v3_dot(a->normal, b->normal) > 0.9;
 }
 
+static void add_veil(cell *p, dem_veil veil)
+{
+    if (p->weight == 0)
+        p->veil = (dem_veil){.key = veil.key};
+    p->veil.through += veil.through;
+    p->veil.light.r += veil.light.r;
+    p->veil.light.g += veil.light.g;
+    p->veil.light.b += veil.light.b;
+}
+
 static void take_sample(const dem_stage *s, double x, double y, cell *p)
 {
     dem_spot seen;
+    bool any = dem_stage_look(s, x, y, &seen);
+    add_veil(p, dem_stage_veil(s, x, y, any ? &seen : NULL));
     p->weight++;
-    if (!dem_stage_look(s, x, y, &seen))
+    if (!any)
         return;
     int k = 0;
     while (k < p->count && !same_surface(s, &p->patches[k].spot, &seen))
@@ -75,7 +88,8 @@ static void take_sample(const dem_stage *s, double x, double y, cell *p)
 
 static bool same_sight(const dem_stage *s, const cell *a, const cell *b)
 {
-    return a->count == b->count && (a->count == 0 || same_surface(s, &a->patches[0].spot, &b->patches[0].spot));
+    return a->veil.key == b->veil.key && a->count == b->count &&
+           (a->count == 0 || same_surface(s, &a->patches[0].spot, &b->patches[0].spot));
 }
 
 // one sample in the middle of every pixel, many where a neighbour sees another surface
@@ -193,8 +207,9 @@ static void finish_pixel(const dem_stage *s, tile *t, int x, int y, uint8_t *rgb
         sum[2] += w * colour.b * light.b;
         sky -= w;
     }
+    const float veil[3] = {c->veil.light.r, c->veil.light.g, c->veil.light.b}, all = (float)c->weight;
     for (int k = 0; k < 3; k++)  // the sky behind it all is white
-        rgb[k] = to_srgb((sum[k] + sky) / (float)c->weight);
+        rgb[k] = to_srgb(((sum[k] + sky) / all * c->veil.through + veil[k]) / all);
 }
 
 static void render_tile(const dem_stage *s, tile *t, dem_image *image)

@@ -4,13 +4,9 @@
 
 #include "dem/clump.h"
 #include "dem/mesh.h"
-#include "out/png.h"
 #include "math/vec.h"
-
-/// Linear light reflected, 0..1 [-]
-typedef struct dem_colour {
-    float r, g, b;
-} dem_colour;
+#include "out/colour.h"
+#include "out/png.h"
 
 /// A mesh or balls; many bodies may share one shape. Everything is borrowed.
 typedef struct dem_render_shape {
@@ -26,6 +22,8 @@ typedef struct dem_render_body {
     dem_quat orientation;
     double scale;  ///< [-]
     dem_colour colour;
+    float clear;  ///< part of the light that passes straight through it; 0: none. A clear body is a mesh; it casts no
+                  ///< shadow
 } dem_render_body;
 
 typedef struct dem_render_scene {

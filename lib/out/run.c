@@ -160,7 +160,7 @@ static double fraction(const runner *r)
 static bool tell(const runner *r, double steps_per_second)
 {
     char what[64];
-    snprintf(what, sizeof what, "t = %.4g s, %.3g steps/s,", dem_world_time(r->w), steps_per_second);
+    snprintf(what, sizeof what, "running, t = %.4g s, %.3g steps/s,", dem_world_time(r->w), steps_per_second);
     return dem_progress(r->ctx, what, fraction(r));
 }
 

@@ -47,7 +47,8 @@ static void put_members(dem_json_writer *w, const dem_run_report *r)
 {
     const dem_figures *f = &r->figures;
     dem_json_put_string(w, "ended", r->ended);
-    dem_json_put_whole(w, "steps", (int64_t)r->steps);
+    dem_json_put_whole(w, "steps", (int64_t)(r->figures.step - r->warmup));
+    dem_json_put_whole(w, "timed_steps", (int64_t)r->steps);
     dem_json_put_number(w, "time", f->time);
     dem_json_put_number(w, "step", r->step);
     dem_json_put_number(w, "critical_step", r->critical_step);
@@ -108,6 +109,9 @@ dem_status dem_run_report_write(const char *directory, const dem_run_report *r, 
     dem_json_open_object(w, NULL);
     dem_json_put_string(w, "schema", "dem-run/1");
     dem_json_put_string(w, "program", "dem-clump " DEM_VERSION);
+#ifdef __VERSION__
+    dem_json_put_string(w, "compiler", __VERSION__);
+#endif
     dem_json_put_string(w, "title", r->title);
     dem_json_put_whole(w, "last_step", (int64_t)r->figures.step);
     put_members(w, r);

@@ -12,6 +12,7 @@ typedef struct dem_run_report {
     const char *ended;     ///< "done", "interrupted" or why it failed
     dem_figures figures;   ///< at the end
     uint64_t steps;        ///< taken in `loop_seconds`
+    uint64_t warmup;       ///< steps at the scene's start that do not count
     double step;           ///< their size at the end [s]
     double critical_step;  ///< INFINITY: no contact [s]
     double loop_seconds, setup_seconds;

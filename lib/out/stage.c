@@ -6,6 +6,7 @@
 #include "base/memory.h"
 #include "base/random.h"
 #include "math/quat.h"
+#include "out/creases.h"
 #include "out/smooth.h"
 
 enum {
@@ -14,7 +15,9 @@ enum {
     GROUND_FEW_SUN = 16,         // to the sun; if some are stopped and some are not,
     GROUND_SUN = 48,             // so many
     SMOOTH_TRIANGLES = 1 << 20,  // more than pixels: nobody sees their facets
+    LAYERS = 12,                 // of clear bodies that are looked through
 };
+static const uint32_t UNUSED = UINT32_MAX;
 
 _Static_assert(GROUND_SKY <= STAGE_SUBSETS * STAGE_SKY_RAYS && GROUND_SUN <= STAGE_SUBSETS * STAGE_SUN_RAYS,
                "the ground takes its rays from the set of the bodies");
@@ -25,6 +28,11 @@ static const double SHADOW = 0.62;           // how dark the ground may become
 static const double GROUND_REACH = 0.4;      // how far bodies darken the ground
 static const double FADE = 0.14;             // edge of the picture without shadows, over its smaller side
 static const double BEHIND = 0.12;           // brightness of what hides the sky, over that of the sky
+static const double FRONT = 0.22;            // light held back by what is seen from its outside, over that from inside
+static const double LINE = 0.9;              // half the breadth of a crease [pixels]
+static const double LINE_HELD = 0.75;        // light that a crease holds back
+static const double LINE_SHADE = 0.25;       // brightness of a crease, over that of its body
+static const double MOST_PATH = 4;           // through a clear body, over its thickness
 static const double NEAR = 2e-4;             // rays start so far off the surface, not to meet it
 
 // ---- setting up
@@ -70,21 +78,50 @@ static void choose_frame(const dem_render_shape *shape, stage_shape *frame)
         *frame = (stage_shape){.size = 1};
 }
 
+static dem_status add_mesh(dem_ray_scene *rays, const dem_mesh *mesh, const stage_shape *frame, dem_error *error)
+{
+    return dem_ray_add_mesh(rays, mesh->vertices, mesh->vertex_count, mesh->triangles, mesh->triangle_count,
+                            frame->origin, 1 / frame->size, error);
+}
+
+static dem_status add_solid(dem_stage *s, size_t i, uint32_t *count, dem_error *error)
+{
+    const dem_render_shape *shape = &s->scene->shapes[i];
+    stage_shape *frame = &s->shapes[i];
+    frame->solid = (*count)++;
+    if (!shape->mesh)
+        return dem_ray_add_balls(s->rays, shape->balls, shape->ball_count, frame->origin, 1 / frame->size, error);
+    if (shape->mesh->triangle_count <= SMOOTH_TRIANGLES && !(frame->normals = dem_mesh_corner_normals(shape->mesh)))
+        return dem_fail_memory(error);
+    return add_mesh(s->rays, shape->mesh, frame, error);
+}
+
+static dem_status add_clear(dem_stage *s, size_t i, uint32_t *count, dem_error *error)
+{
+    stage_shape *frame = &s->shapes[i];
+    if (!s->panes)
+        DEM_TRY(dem_ray_create(&s->panes, error));
+    frame->clear = (*count)++;
+    frame->creases = dem_mesh_creases(s->scene->shapes[i].mesh);
+    return frame->creases ? add_mesh(s->panes, s->scene->shapes[i].mesh, frame, error) : dem_fail_memory(error);
+}
+
+// a shape is added to the rays that its bodies are of
 static dem_status add_shapes(dem_stage *s, dem_error *error)
 {
-    for (size_t i = 0; i < s->scene->shape_count; i++) {
-        const dem_render_shape *shape = &s->scene->shapes[i];
-        const dem_mesh *mesh = shape->mesh;
-        stage_shape *frame = &s->shapes[i];
-        choose_frame(shape, frame);
-        if (!mesh) {
-            DEM_TRY(dem_ray_add_balls(s->rays, shape->balls, shape->ball_count, frame->origin, 1 / frame->size, error));
-            continue;
-        }
-        DEM_TRY(dem_ray_add_mesh(s->rays, mesh->vertices, mesh->vertex_count, mesh->triangles, mesh->triangle_count,
-                                 frame->origin, 1 / frame->size, error));
-        if (mesh->triangle_count <= SMOOTH_TRIANGLES && !(frame->normals = dem_mesh_corner_normals(mesh)))
-            return dem_fail_memory(error);
+    const dem_render_scene *scene = s->scene;
+    uint32_t solids = 0, clears = 0;
+    for (size_t i = 0; i < scene->shape_count; i++) {
+        choose_frame(&scene->shapes[i], &s->shapes[i]);
+        s->shapes[i].solid = s->shapes[i].clear = UNUSED;
+    }
+    for (size_t i = 0; i < scene->body_count; i++) {
+        size_t shape = scene->bodies[i].shape;
+        bool clear = scene->bodies[i].clear > 0;
+        if (clear && s->shapes[shape].clear == UNUSED)
+            DEM_TRY(add_clear(s, shape, &clears, error));
+        if (!clear && s->shapes[shape].solid == UNUSED)
+            DEM_TRY(add_solid(s, shape, &solids, error));
     }
     return DEM_OK;
 }
@@ -95,23 +132,42 @@ static dem_vec3 to_stage(const dem_stage *s, const dem_render_body *body, dem_ve
     return v3_scale(v3_along(base, body->scale, quat_rotate(body->orientation, x)), 1 / s->view->radius);
 }
 
+static dem_ray_pose pose_of(const dem_stage *s, const dem_render_body *body)
+{
+    const stage_shape *frame = &s->shapes[body->shape];
+    dem_ray_pose pose;
+    dem_vec3 at = to_stage(s, body, frame->origin);
+    for (int k = 0; k < 3; k++) {
+        dem_vec3 axis = quat_rotate(body->orientation, v3(k == 0, k == 1, k == 2));
+        axis = v3_scale(axis, body->scale * frame->size / s->view->radius);
+        for (int c = 0; c < 3; c++)
+            pose.axes[k][c] = (float)v3_get(axis, c);
+        pose.position[k] = (float)v3_get(at, k);
+    }
+    return pose;
+}
+
 static dem_status add_bodies(dem_stage *s, dem_error *error)
 {
-    for (size_t i = 0; i < s->scene->body_count; i++) {
+    size_t count = s->scene->body_count;
+    uint32_t solids = 0, clears = 0;
+    s->solid = dem_alloc(count, sizeof *s->solid);
+    s->clear = dem_alloc(s->panes ? count : 0, sizeof *s->clear);
+    if (!s->solid || !s->clear)
+        return dem_fail_memory(error);
+    for (size_t i = 0; i < count; i++) {
         const dem_render_body *body = &s->scene->bodies[i];
         const stage_shape *frame = &s->shapes[body->shape];
-        dem_ray_pose pose;
-        dem_vec3 at = to_stage(s, body, frame->origin);
-        for (int k = 0; k < 3; k++) {
-            dem_vec3 axis = quat_rotate(body->orientation, v3(k == 0, k == 1, k == 2));
-            axis = v3_scale(axis, body->scale * frame->size / s->view->radius);
-            for (int c = 0; c < 3; c++)
-                pose.axes[k][c] = (float)v3_get(axis, c);
-            pose.position[k] = (float)v3_get(at, k);
+        dem_ray_pose pose = pose_of(s, body);
+        if (body->clear > 0) {
+            s->clear[clears++] = (uint32_t)i;
+            DEM_TRY(dem_ray_add_instance(s->panes, frame->clear, &pose, error));
+        } else {
+            s->solid[solids++] = (uint32_t)i;
+            DEM_TRY(dem_ray_add_instance(s->rays, frame->solid, &pose, error));
         }
-        DEM_TRY(dem_ray_add_instance(s->rays, body->shape, &pose, error));
     }
-    return DEM_OK;
+    return s->panes ? dem_ray_commit(s->panes, error) : DEM_OK;
 }
 
 // the sun stands to the upper left, a little before the scene
@@ -156,9 +212,9 @@ static void describe_triangle(const dem_stage *s, const dem_render_body *body, c
 
 static void describe_hit(const dem_stage *s, dem_vec3 from, dem_vec3 along, const dem_ray_hit *hit, dem_spot *p)
 {
-    const dem_render_body *body = &s->scene->bodies[hit->instance];
+    p->body = s->solid[hit->instance];
+    const dem_render_body *body = &s->scene->bodies[p->body];
     const dem_render_shape *shape = &s->scene->shapes[body->shape];
-    p->body = hit->instance;
     p->primitive = hit->primitive;
     p->at = v3_along(from, hit->distance, along);
     if (shape->mesh)
@@ -206,6 +262,77 @@ bool dem_stage_look(const dem_stage *s, double x, double y, dem_spot *p)
         return ground_at(s, from, along, p);
     describe_hit(s, from, along, &hit, p);
     return true;
+}
+
+// ---- what is clear
+
+// whether a crease of the triangle passes within a line's breadth of a point of the picture [pixels]; `near`: within
+// two
+static bool on_crease(const dem_stage *s, const dem_render_body *body, uint32_t triangle, double x, double y,
+                      bool *near)
+{
+    const dem_render_shape *shape = &s->scene->shapes[body->shape];
+    unsigned creases = s->shapes[body->shape].creases[triangle];
+    bool on = false;
+    for (size_t k = 0; k < 3 && creases >> k; k++) {
+        double ends[2][2];
+        if (!(creases >> k & 1))
+            continue;
+        for (size_t e = 0; e < 2; e++) {
+            dem_vec3 corner = shape->mesh->vertices[shape->mesh->triangles[3 * (size_t)triangle + (k + 1 + e) % 3]];
+            dem_vec3 at = v3_along(body->position, body->scale, quat_rotate(body->orientation, corner));
+            dem_view_project(s->view, at, &ends[e][0], &ends[e][1]);
+        }
+        double u = ends[1][0] - ends[0][0], v = ends[1][1] - ends[0][1], length = hypot(u, v);
+        double off = length > 0 ? fabs(u * (y - ends[0][1]) - v * (x - ends[0][0])) / length : INFINITY;
+        on |= off < LINE;
+        *near |= off < LINE + 1.5;
+    }
+    return on;
+}
+
+// light through a body at an angle passes more of it; the near side of a box is held back, so that it shows what is in
+// it
+static void add_pane(const dem_stage *s, const dem_ray_hit *hit, dem_vec3 along, double x, double y, dem_veil *veil)
+{
+    const dem_render_body *body = &s->scene->bodies[s->clear[hit->instance]];
+    const dem_mesh *mesh = s->scene->shapes[body->shape].mesh;
+    const uint32_t *t = &mesh->triangles[3 * (size_t)hit->primitive];
+    dem_vec3 a = mesh->vertices[t[0]];
+    dem_vec3 n = v3_cross(v3_sub(mesh->vertices[t[1]], a), v3_sub(mesh->vertices[t[2]], a));
+    double slope = v3_dot(quat_rotate(body->orientation, v3_unit(n)), along), held, shade = 1;
+    bool near = false;
+    if (on_crease(s, body, hit->primitive, x, y, &near)) {
+        held = LINE_HELD;
+        shade = LINE_SHADE;
+    } else {
+        held = 1 - pow((double)body->clear, fmin(1 / fabs(slope), MOST_PATH));
+        held *= slope > 0 ? FRONT : 1;
+    }
+    float add = veil->through * (float)held;
+    veil->light.r += add * (float)shade * body->colour.r;
+    veil->light.g += add * (float)shade * body->colour.g;
+    veil->light.b += add * (float)shade * body->colour.b;
+    veil->through -= add;
+    veil->key = veil->key * 31 + 2 * s->clear[hit->instance] + 1 + near;
+}
+
+dem_veil dem_stage_veil(const dem_stage *s, double x, double y, const dem_spot *spot)
+{
+    dem_veil veil = {.through = 1};
+    dem_vec3 from, along;
+    dem_ray_hit hit;
+    if (!s->panes)
+        return veil;
+    view_ray(s, x, y, &from, &along);
+    dem_ray ray = make_ray(from, along, 0);
+    if (spot)
+        ray.far = (float)(v3_dot(v3_sub(spot->at, from), along) * (1 - NEAR));
+    for (int layer = 0; layer < LAYERS && dem_ray_closest(s->panes, &ray, &hit); layer++) {
+        add_pane(s, &hit, along, x, y, &veil);
+        ray.near = hit.distance + (float)NEAR;
+    }
+    return veil;
 }
 
 // ---- light
@@ -318,9 +445,14 @@ dem_status dem_stage_init(dem_stage *s, const dem_render_scene *scene, const dem
 
 void dem_stage_release(dem_stage *s)
 {
-    for (size_t i = 0; s->shapes && i < s->scene->shape_count; i++)
+    for (size_t i = 0; s->shapes && i < s->scene->shape_count; i++) {
         free(s->shapes[i].normals);
+        free(s->shapes[i].creases);
+    }
     free(s->shapes);
+    free(s->solid);
+    free(s->clear);
     dem_ray_destroy(s->rays);
+    dem_ray_destroy(s->panes);
     *s = (dem_stage){0};
 }

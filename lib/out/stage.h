@@ -22,14 +22,18 @@ typedef struct stage_lights {
 typedef struct stage_shape {
     dem_vec3 origin;
     double size;
-    float *normals;  ///< of the corners; NULL: flat, or balls
+    float *normals;          ///< of the corners; NULL: flat, or balls
+    unsigned char *creases;  ///< of what is clear
+    uint32_t solid, clear;   ///< number of the shape among the rays' solid ones and clear ones
 } stage_shape;
 
 /// Lengths are in radii of the view, the origin is its centre.
 typedef struct dem_stage {
     const dem_render_scene *scene;
     const dem_view *view;
-    dem_ray_scene *rays;
+    dem_ray_scene *rays;      ///< of the solid bodies
+    dem_ray_scene *panes;     ///< of the clear ones; NULL: there are none
+    uint32_t *solid, *clear;  ///< the bodies of their instances
     stage_shape *shapes;
     double ground;  ///< height
     dem_vec3 up, sun, sun_u, sun_v;
@@ -51,6 +55,16 @@ void dem_stage_release(dem_stage *stage);
 
 /// What is seen at a point of the picture [pixels]; false: nothing but sky.
 bool dem_stage_look(const dem_stage *stage, double x, double y, dem_spot *spot);
+
+/// What clear bodies do to the light that comes from behind them.
+typedef struct dem_veil {
+    float through;     ///< part of it that comes through
+    dem_colour light;  ///< their own
+    uint32_t key;      ///< differs where something else is seen
+} dem_veil;
+
+/// The clear bodies before a point of the picture; `spot`: what is behind them, NULL: sky.
+dem_veil dem_stage_veil(const dem_stage *stage, double x, double y, const dem_spot *spot);
 
 /// Light on a spot of a body, from one part of the light rays, 0..STAGE_SUBSETS - 1.
 dem_colour dem_stage_light(const dem_stage *stage, const dem_spot *spot, size_t subset);

@@ -91,6 +91,7 @@ static void put_inertia(const dem_world *w, size_t row, const dem_template *t, d
         inertia[1 + k] = 1 / (t->inertia[k] * fifth);
     inertia[4] = t->centred ? 0 : t->radius_out * scale;
     inertia[5] = t->mass * cube;
+    inertia[6] = 1 / (t->least_mass * cube);
     inertia[7] = t->isotropic;
 }
 
@@ -116,6 +117,8 @@ static void put_body(dem_world *w, size_t row, const dem_body_def *def)
     memcpy(momentum, (double[]){m * def->velocity.x, m * def->velocity.y, m * def->velocity.z, l.x, l.y, l.z},
            6 * sizeof *momentum);
     b->limit[row] = b->path_then[row] = -1;
+    if (b->strain_limit)
+        b->strain_limit[row] = 0;
     if (b->wall_limit)
         b->wall_limit[row] = -1;
 }
@@ -131,6 +134,8 @@ static void put_dummy(dem_bodies *b, size_t row, double at)
     b->limit[row] = INFINITY;
     if (b->wall_limit)
         b->wall_limit[row] = INFINITY;
+    if (b->strain_limit)
+        b->strain_limit[row] = INFINITY;
 }
 
 dem_status dem_bodies_create(dem_world *w, const dem_body_def *defs, size_t count, dem_error *error)

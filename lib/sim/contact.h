@@ -23,7 +23,10 @@ enum {
     AT_AREA = 16,     // R_min^2 / (R_i + R_j)
     AT_FORCE = 17,    // on a
     AT_WALL = 20,     // velocity of the wall's surface
-    AT_COUNT = 23
+    AT_STRAIN = 23,   // of the time step, times the mass
+    AT_LEAST_A = 24,  // 1 / least mass of a, and of b
+    AT_LEAST_B = 25,
+    AT_COUNT = 26
 };
 
 typedef struct contact_batch {
@@ -159,6 +162,10 @@ DEM_INLINE void pair_velocity(const dem_features f, const dem_rows *rows, const 
                    wide_all(0.5) * dot3((wide3){a[3] + b[3], a[4] + b[4], a[5] + b[5]}, get3(batch, AT_NORMAL, g)));
     if (damped(f) && !f.local_mass)
         wide_store(batch->at[AT_MASS] + g, a[6] + b[6]);
+    if (f.watch) {
+        wide_store(batch->at[AT_LEAST_A] + g, a[7]);
+        wide_store(batch->at[AT_LEAST_B] + g, b[7]);
+    }
 }
 
 /// Walls by form. The normal points from the body into the wall; the contact point is the wall's nearest.
@@ -230,6 +237,8 @@ DEM_INLINE void wall_velocity(const dem_features f, const dem_rows *rows, const 
         wide_store(batch->at[AT_TURN] + g, wide_all(0.5) * dot3(turning, get3(batch, AT_NORMAL, g)));
     if (damped(f) && !f.local_mass)
         wide_store(batch->at[AT_MASS] + g, a[6]);
+    if (f.watch)
+        wide_store(batch->at[AT_LEAST_A] + g, a[7]);
 }
 
 DEM_INLINE void load_law(const dem_features f, const dem_rows *rows, const uint32_t *row, wide law[LAW_SLOTS])
@@ -304,6 +313,28 @@ DEM_INLINE void put_records(const dem_features f, const contact_batch *batch, si
             r->elastic_slide = held[i];
         }
     }
+}
+
+/// What a contact takes of the room for a stable step, times the mass (timestep.h): h^2 k + 2 h c, all directions.
+DEM_INLINE wide contact_strain(const dem_features f, const wide *law, const normal_law *n, wide mass, wide step,
+                               const bool wall)
+{
+    wide k = n->stiffness, c = wide_all(0);
+    if (f.friction) {
+        wide slide = wide_fma(law[LAW_SLIDE_RATIO], k, law[LAW_SLIDE_STIFFNESS]);
+        if (f.mindlin)
+            slide = wide_fma(law[LAW_SLIDE_HERTZ], n->radius, slide);
+        k = wide_fma(wide_all(2), slide, k);
+        if (f.slide_damping && f.rate)
+            c = wide_all(2) * (law[LAW_SLIDE_RATE] * mass);
+        if (f.slide_damping && f.restitution)
+            c = wide_fma(wide_all(2) * law[LAW_SLIDE_ZETA], wide_sqrt(slide * mass), c);
+    }
+    if (f.rate)
+        c = wide_fma(law[LAW_RATE], mass, c);
+    if (f.restitution)
+        c = wide_fma(law[LAW_ZETA], wide_sqrt(n->stiffness * mass), c);
+    return wide_all(wall ? 1 : 2) * (step * wide_fma(step, k, c + c));
 }
 
 DEM_INLINE void contact_law(const dem_features f, const dem_rows *rows, const dem_contact_job *job, size_t at, size_t g,
@@ -383,17 +414,24 @@ DEM_INLINE void contact_law(const dem_features f, const dem_rows *rows, const de
         tally_add(job->tally->friction, g, loss.friction);
     if (f.ledger && damped(f))
         tally_add(job->tally->viscous, g, loss.viscous);
+    if (f.watch) {
+        wide strain = contact_strain(f, law, &normal, mass, wide_all(job->next_step), wall);
+        wide_store(batch->at[AT_STRAIN] + g, wide_or_zero(on, strain));
+    }
     force = scale3(force, wide_all(job->kick));
     put3(batch, AT_FORCE, g, force);
     if (wall && f.moving && f.ledger)
         tally_add(job->tally->work, g, dot3(force, get3(batch, AT_WALL, g)));
 }
 
-DEM_INLINE void scatter(const dem_rows *rows, const uint32_t *row, wide3 impulse, wide3 arm)
+DEM_INLINE void scatter(const dem_features f, const dem_rows *rows, const contact_batch *batch, size_t g, int least,
+                        const uint32_t *row, wide3 impulse, wide3 arm)
 {
     wide3 moment = cross3(arm, impulse);
-    wide zero = wide_all(0);
-    wide columns[8] = {impulse.x, impulse.y, impulse.z, moment.x, moment.y, moment.z, zero, zero};
+    wide zero = wide_all(0), strain = zero;
+    if (f.watch)
+        strain = wide_load(batch->at[AT_STRAIN] + g) * wide_load(batch->at[least] + g);
+    wide columns[8] = {impulse.x, impulse.y, impulse.z, moment.x, moment.y, moment.z, strain, zero};
     rows_add(rows->momentum, row, columns);
 }
 
@@ -421,13 +459,13 @@ DEM_INLINE void contact_batches(const dem_features f, const dem_rows *rows, cons
             continue;
         for (size_t block = 0; block < count; block += DEM_BLOCK_LANES) {
             for (size_t g = block; g < block + DEM_BLOCK_LANES; g += DEM_WIDTH)
-                scatter(rows, c->a + from + g, get3(&batch, AT_FORCE, g), get3(&batch, AT_A, g));
+                scatter(f, rows, &batch, g, AT_LEAST_A, c->a + from + g, get3(&batch, AT_FORCE, g), get3(&batch, AT_A, g));
             if (wall)
                 continue;
             for (size_t g = block; g < block + DEM_BLOCK_LANES; g += DEM_WIDTH) {
                 wide3 force = get3(&batch, AT_FORCE, g);
                 force = (wide3){wide_all(0) - force.x, wide_all(0) - force.y, wide_all(0) - force.z};
-                scatter(rows, c->target + from + g, force, get3(&batch, AT_B, g));
+                scatter(f, rows, &batch, g, AT_LEAST_B, c->target + from + g, force, get3(&batch, AT_B, g));
             }
         }
     }

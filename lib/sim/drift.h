@@ -226,6 +226,18 @@ DEM_INLINE wide taken(const wide3 impulse[2], const wide was[8], const wide now[
     return wide_all(0) - (dot3(impulse[0], v) + dot3(impulse[1], w));
 }
 
+DEM_INLINE void note_strained(dem_motion_job *job, size_t i, wide strain)
+{
+    unsigned bits = wide_bits(wide_less(wide_load(job->strain_limit + i), strain));
+    double lane[DEM_WIDTH];
+    if (bits)
+        wide_store(lane, strain);
+    for (; bits; bits &= bits - 1) {
+        uint32_t k = (uint32_t)__builtin_ctz(bits);
+        job->strained[job->strained_count++] = (dem_strained){(uint32_t)i + k, lane[k]};
+    }
+}
+
 DEM_INLINE void move_bodies(const dem_rows *rows, dem_motion_job *job, const bool damped)
 {
     wide step = wide_all(job->step);
@@ -262,7 +274,7 @@ DEM_INLINE void move_bodies(const dem_rows *rows, dem_motion_job *job, const boo
         motion[4] = spin.y;
         motion[5] = spin.z;
         motion[6] = inertia[0];
-        motion[7] = wide_all(0);
+        motion[7] = inertia[6];
         wide turning = dot3(spin, spin) * (inertia[4] * inertia[4]);
         wide3 v = {motion[0], motion[1], motion[2]};
         wide speed2 = dot3(v, v) + turning;
@@ -273,6 +285,10 @@ DEM_INLINE void move_bodies(const dem_rows *rows, dem_motion_job *job, const boo
             bits |= wide_bits(wide_not_le(path + wide_all(job->wall_path), wide_load(job->wall_limit + i)));
         for (; bits; bits &= bits - 1)
             job->asked[job->asked_count++] = (uint32_t)i + (uint32_t)__builtin_ctz(bits);
+        if (job->strain_limit) {
+            note_strained(job, i, momentum[6]);
+            momentum[6] = wide_all(0);
+        }
         if (damped && job->tally) {
             tally_add(job->tally->local, i, wide_all(0.5) * taken(d.local, was, motion));
             tally_add(job->tally->drag, i, wide_all(0.5) * taken(d.drag, was, motion));

@@ -22,6 +22,7 @@
     X(mixed, "more than one law")                                                                                      \
     X(weighted, "several contacts of one pair share its force")                                                        \
     X(ledger, "energy that contacts dissipate is summed")                                                              \
+    X(watch, "contacts tell how near an automatic step is to its limit")                                        \
     X(moving, "walls that move")
 
 typedef struct dem_features {
@@ -39,8 +40,8 @@ typedef enum dem_law_slot {
     LAW_ZETA,            ///< z: c_n = z sqrt(stiffness m_eff); 2 zeta, with Hertz 2 sqrt(5/6) zeta [-]
     LAW_FLOOR,           ///< least normal force: 0 where the tail is cut, else -INFINITY [N]
     LAW_SLIDE_STIFFNESS, ///< k_t [N/m]
-    LAW_SLIDE_RATIO,     ///< k_t / k_n [-]
-    LAW_SLIDE_HERTZ,     ///< 8 G*: k_t = 8 G* sqrt(R* overlap) [Pa]
+    LAW_SLIDE_RATIO,     ///< k_t / k_n, where k_n does not depend on the overlap [-]
+    LAW_SLIDE_HERTZ,     ///< 8 G*, or k_t / k_n 2 E*: k_t = this sqrt(R* overlap) [Pa]
     LAW_SLIDE_RATE,      ///< G_t: c_t = m_eff G_t [1/s]
     LAW_SLIDE_ZETA,      ///< z: c_t = z sqrt(k_t m_eff) [-]
     LAW_FRICTION,        ///< coefficient [-]

@@ -18,17 +18,30 @@
 #define HERTZ .hertz = true, .friction = true, .mindlin = true, .slide_damping = true
 #define RATE .rate = true
 #define RESTITUTION .restitution = true, .cut = true, .local_mass = true
+#ifdef DEM_FEW_KERNELS
+#define INSTANCES(X)
+#else
+#define CLUMPS .ledger = true, .offset = true
+#define SIZES .ledger = true, .offset = true, .scaled = true
+#define AUTO .watch = true
 #define INSTANCES(X)                                                                                                   \
     X(linear_rate_spheres, LINEAR, RATE, .ledger = true)                                                               \
-    X(linear_rate, LINEAR, RATE, .ledger = true, .offset = true)                                                       \
+    X(linear_rate, LINEAR, RATE, CLUMPS)                                                                               \
     X(linear_rate_bare_spheres, LINEAR, RATE)                                                                          \
     X(linear_rate_bare, LINEAR, RATE, .offset = true)                                                                  \
     X(linear_spheres, LINEAR, RESTITUTION, .ledger = true)                                                             \
-    X(linear_clumps, LINEAR, RESTITUTION, .ledger = true, .offset = true)                                              \
-    X(linear_sizes, LINEAR, RESTITUTION, .ledger = true, .offset = true, .scaled = true)                               \
+    X(linear_clumps, LINEAR, RESTITUTION, CLUMPS)                                                                      \
+    X(linear_sizes, LINEAR, RESTITUTION, SIZES)                                                                        \
+    X(linear_spheres_auto, LINEAR, RESTITUTION, .ledger = true, AUTO)                                                  \
+    X(linear_clumps_auto, LINEAR, RESTITUTION, CLUMPS, AUTO)                                                           \
+    X(linear_sizes_auto, LINEAR, RESTITUTION, SIZES, AUTO)                                                             \
     X(hertz_spheres, HERTZ, RESTITUTION, .ledger = true)                                                               \
-    X(hertz_clumps, HERTZ, RESTITUTION, .ledger = true, .offset = true)                                                \
-    X(hertz_sizes, HERTZ, RESTITUTION, .ledger = true, .offset = true, .scaled = true)
+    X(hertz_clumps, HERTZ, RESTITUTION, CLUMPS)                                                                        \
+    X(hertz_sizes, HERTZ, RESTITUTION, SIZES)                                                                          \
+    X(hertz_spheres_auto, HERTZ, RESTITUTION, .ledger = true, AUTO)                                                    \
+    X(hertz_clumps_auto, HERTZ, RESTITUTION, CLUMPS, AUTO)                                                             \
+    X(hertz_sizes_auto, HERTZ, RESTITUTION, SIZES, AUTO)
+#endif
 
 #define KERNELS_OF(name, f)                                                                                            \
     static void name##_pairs(dem_features given, const dem_rows *rows, const dem_contact_job *job)                     \

@@ -2,11 +2,11 @@
 ///
 /// Bodies stand in rows of 8 doubles on 64-byte boundaries:
 ///   pose     x y z  q0 q1 q2 q3  scale          two rows side by side, 16 doubles a body
-///   motion   vx vy vz  wx wy wz  1/m  -
-///   momentum P x y z  L x y z  - -              half a step before the pose; axes of space
-///   inertia  1/m  1/I1 1/I2 1/I3  reach  m  rate  isotropic
+///   motion   vx vy vz  wx wy wz  1/m  1/m_least: the least mass that a contact can see
+///   momentum P x y z  L x y z  strain -          half a step before the pose; axes of space. strain: see timestep.h
+///   inertia  1/m  1/I1 1/I2 1/I3  reach  m  1/m_least  isotropic
 /// `reach` bounds the distance of a surface point from the centre where it counts for motion: 0 for one sphere at the
-/// centre. `rate` is 1/I of axis a, see drift.h.
+/// centre.
 #ifndef DEM_SIM_KERNELS_H
 #define DEM_SIM_KERNELS_H
 
@@ -61,6 +61,7 @@ typedef struct dem_contact_job {
     dem_contact_columns columns;
     size_t begin, end;      ///< multiples of 8
     double last_step, kick; ///< time since the last step; time the forces act [s]
+    double next_step;       ///< that the strain is for [s] (watch)
     dem_tally *tally;
     dem_contact_record *records; ///< [end - begin] instead of forces, in the columns' order; NULL: forces
 } dem_contact_job;
@@ -82,6 +83,12 @@ typedef struct dem_motion_tally {
     double local[DEM_BLOCK_LANES], drag[DEM_BLOCK_LANES];
 } dem_motion_tally;
 
+/// A body whose contacts strain the time step more than it was allowed, see timestep.h.
+typedef struct dem_strained {
+    uint32_t row;
+    double strain; ///< [-]
+} dem_strained;
+
 typedef struct dem_motion_job {
     size_t begin, end;        ///< bodies, multiples of 8
     double step, kick;        ///< of the positions; of the forces [s]
@@ -90,6 +97,9 @@ typedef struct dem_motion_job {
     const double *limit;      ///< [bodies] of the path, that asks for a look at the body's lists
     const double *wall_limit; ///< [bodies] of the path plus that of moving walls; NULL: none move
     double wall_path;         ///< [m]
+    const double *strain_limit; ///< [bodies] of the strain, that asks for a look at the step; NULL: not watched
+    dem_strained *strained;     ///< bodies beyond it
+    size_t strained_count;
     const double *before;     ///< [8 a body] momentum before the contacts (local damping)
     double local, viscous;    ///< damping: Cundall's alpha [-], c [1/s]
     bool vector, exclude_gravity;

@@ -9,6 +9,10 @@
 #include "sim/restitution.h"
 #include "sim/scene.h"
 
+// A dashpot that cannot pull gives no restitution of 0, and near 0 the step would have to be very small: this one
+// leaves a hundredth of the speed, at twice the critical damping.
+static const double LEAST_RESTITUTION = 0.01;
+
 static const char *name_of(const dem_scene *scene, uint32_t material)
 {
     return scene->materials[material].name ? scene->materials[material].name : "";
@@ -63,12 +67,22 @@ static void fill_damping(const dem_pair_law *law, double *row, dem_features *nee
         row[LAW_RATE] = law->damping_rate;
         needs->rate = true;
     } else if (law->damping == DEM_DAMPING_RESTITUTION && law->restitution < 1) {
-        zeta = cut ? dem_damping_ratio_cut(law->restitution) : dem_damping_ratio(law->restitution);
+        zeta = cut ? dem_damping_ratio_cut(fmax(law->restitution, LEAST_RESTITUTION))
+                   : dem_damping_ratio(law->restitution);
         row[LAW_ZETA] = 2 * zeta * (law->normal == DEM_NORMAL_HERTZ ? sqrt(5.0 / 6) : 1);
         needs->restitution = true;
     } else
         return;
     needs->cut |= cut;
+}
+
+// k_t = modulus * contact radius; the spring must not get force, and so energy, from a normal force that grows
+static void grow_with_radius(const dem_pair_law *law, double *row, double modulus, dem_features *needs)
+{
+    row[LAW_SLIDE_HERTZ] = modulus;
+    row[LAW_KEEP_LEAST] = 0;
+    row[LAW_KEEP_MOST] = law->rescale ? 1 : INFINITY;
+    needs->mindlin = true;
 }
 
 static dem_status fill_friction(const dem_scene *scene, const dem_pair_law *law, double *row, dem_features *needs,
@@ -83,13 +97,15 @@ static dem_status fill_friction(const dem_scene *scene, const dem_pair_law *law,
         double young, shear;
         if (law->normal != DEM_NORMAL_HERTZ ||
             !moduli(&scene->materials[law->materials[0]], &scene->materials[law->materials[1]], &young, &shear))
-            return refuse(scene, law, "has Mindlin's friction, which needs the normal law of Hertz", error);
-        row[LAW_SLIDE_HERTZ] = 8 * shear;
-        row[LAW_KEEP_LEAST] = 0;
-        row[LAW_KEEP_MOST] = law->rescale ? 1 : INFINITY;
-        needs->mindlin = true;
+            return refuse(scene, law,
+                          "has Mindlin's friction, which needs the normal law of Hertz; take \"hertz\" with it, or "
+                          "friction \"linear\"",
+                          error);
+        grow_with_radius(law, row, 8 * shear, needs);
     } else if (law->tangential_stiffness > 0)
         row[LAW_SLIDE_STIFFNESS] = law->tangential_stiffness;
+    else if (law->normal == DEM_NORMAL_HERTZ)
+        grow_with_radius(law, row, law->stiffness_ratio * row[LAW_HERTZ], needs);
     else
         row[LAW_SLIDE_RATIO] = law->stiffness_ratio;
     if (law->tangential_rate > 0) {

@@ -4,6 +4,10 @@
 #include <string.h>
 
 #include "base/status.h"
+#include "sim/fill.h"
+#include "sim/scene.h"
+
+// ---- listed bodies
 
 static bool finite_vec(dem_vec3 v)
 {
@@ -26,25 +30,132 @@ static dem_status check_body(const dem_scene *scene, const dem_body_def *b, size
     return wrong ? dem_fail(error, DEM_BAD_INPUT, "body %zu %s", index, wrong) : DEM_OK;
 }
 
+// ---- fills
+
+typedef struct placing {
+    const dem_world *w;
+    const dem_scene *scene;
+    dem_fill_shape *shapes;
+    dem_ball *balls;
+    double look;  // how far meshes are asked for [m]
+    dem_ray_list near;
+} placing;
+
+static bool make_shapes(placing *p)
+{
+    const dem_world *w = p->w;
+    p->shapes = dem_alloc_zero(w->shape_count, sizeof *p->shapes);
+    p->balls = dem_alloc(w->templates.sphere_count, sizeof *p->balls);
+    if (!p->shapes || !p->balls)
+        return false;
+    for (size_t i = 0; i < w->shape_count; i++) {
+        dem_clump_def def = dem_clump_view(w->clumps[i]);
+        const dem_template *t = &w->templates.items[i];
+        memcpy(p->balls + t->first, def.balls, def.ball_count * sizeof *def.balls);
+        double volume = def.mass / def.density;
+        p->shapes[i] = (dem_fill_shape){.balls = p->balls + t->first,
+                                        .ball_count = def.ball_count,
+                                        .mass = t->mass,
+                                        .volume = def.volume > 0 ? def.volume : volume,
+                                        .equivalent_diameter = t->equivalent_diameter,
+                                        .radius_out = t->radius_out};
+    }
+    return true;
+}
+
+// distance of a ball to the nearest triangle, as far as it matters
+static double mesh_clearance(void *user, dem_vec3 centre, double radius)
+{
+    placing *p = user;
+    double least = p->look;
+    for (size_t i = 0; i < p->w->walls.count; i++) {
+        const dem_wall *wall = &p->w->walls.items[i];
+        if (wall->form != DEM_FORM_MESH || !dem_mesh_wall_near(wall->mesh, centre, least, &p->near))
+            continue;
+        for (size_t k = 0; k < p->near.count; k++) {
+            dem_closest c = triangle_closest(&wall->mesh->triangles[p->near.items[k]], centre);
+            least = smaller(least, sqrt(c.distance2));
+        }
+    }
+    return least - radius;
+}
+
+static bool has_meshes(const dem_world *w)
+{
+    for (size_t i = 0; i < w->walls.count; i++)
+        if (w->walls.items[i].form == DEM_FORM_MESH)
+            return true;
+    return false;
+}
+
+// how large the largest body of a fill can be
+static double largest_radius(const placing *p, const dem_fill_def *fill)
+{
+    double largest = 0;
+    for (size_t i = 0; i < fill->mix_count; i++) {
+        const dem_fill_shape *s = &p->shapes[fill->mix[i].shape];
+        const dem_size_def *size = &fill->mix[i].size;
+        double most = s->equivalent_diameter;
+        if (size->law == DEM_SIZE_TABLE && size->table_count)
+            most = size->sizes[size->table_count - 1];
+        else if (size->law != DEM_SIZE_AS_IS)
+            most = isfinite(size->largest) ? size->largest : 10 * larger(size->a, size->law == DEM_SIZE_LOGNORMAL ? 0 : size->b);
+        largest = larger(largest, s->radius_out * most / s->equivalent_diameter);
+    }
+    return largest;
+}
+
+static dem_status add_fill(placing *p, const dem_fill_def *fill, dem_body_def **bodies, size_t *count, dem_error *error)
+{
+    dem_body_def *more;
+    size_t added;
+    p->look = 2 * (largest_radius(p, fill) + fill->gap);
+    dem_fill_obstacles there = {.bodies = *bodies,
+                                .body_count = *count,
+                                .domain = &p->scene->domain,
+                                .walls = p->scene->walls,
+                                .wall_count = p->scene->wall_count,
+                                .clearance = has_meshes(p->w) ? mesh_clearance : NULL,
+                                .user = p};
+    DEM_TRY(dem_fill(p->w->ctx, fill, p->shapes, p->w->shape_count, &there, &more, &added, error));
+    dem_body_def *all = realloc(*bodies, (*count + added + 1) * sizeof *all);
+    if (!all) {
+        free(more);
+        return dem_fail_memory(error);
+    }
+    memcpy(all + *count, more, added * sizeof *more);
+    free(more);
+    *bodies = all;
+    *count += added;
+    return DEM_OK;
+}
+
 dem_status dem_place_bodies(const dem_world *w, const dem_scene *scene, dem_body_def **bodies, size_t *count,
                             dem_error *error)
 {
-    (void)w;
+    placing p = {.w = w, .scene = scene};
     *count = scene->bodies.count;
     *bodies = dem_alloc(*count, sizeof **bodies);
-    if (!*bodies)
-        return dem_fail_memory(error);
-    for (size_t i = 0; i < *count; i++) {
-        dem_status status = check_body(scene, &scene->bodies.bodies[i], i, error);
-        if (status != DEM_OK) {
-            free(*bodies);
-            *bodies = NULL;
-            return status;
-        }
+    dem_status status = *bodies ? DEM_OK : dem_fail_memory(error);
+    for (size_t i = 0; status == DEM_OK && i < *count; i++) {
+        status = check_body(scene, &scene->bodies.bodies[i], i, error);
         (*bodies)[i] = scene->bodies.bodies[i];
     }
-    return DEM_OK;
+    if (status == DEM_OK && scene->bodies.fill_count && !make_shapes(&p))
+        status = dem_fail_memory(error);
+    for (size_t i = 0; status == DEM_OK && i < scene->bodies.fill_count; i++)
+        status = add_fill(&p, &scene->bodies.fills[i], bodies, count, error);
+    free(p.shapes);
+    free(p.balls);
+    free(p.near.items);
+    if (status != DEM_OK) {
+        free(*bodies);
+        *bodies = NULL;
+    }
+    return status;
 }
+
+// ---- shapes
 
 dem_status dem_sphere_clump(const dem_scene *scene, size_t shape, dem_clump **clump, dem_error *error)
 {

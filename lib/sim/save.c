@@ -32,8 +32,8 @@ typedef struct block_head {
     uint64_t layout, constants, bodies, shapes, walls, laws, segments;
     dem_features features;
     unsigned char unused[8 - sizeof(dem_features) % 8];
-    uint64_t steps, epoch_steps, exact_then;
-    double epoch_time, last_step, next_step, wall_path, sweep_speed, push_work, stable_step, crude_then, damping_most;
+    uint64_t steps, epoch_steps, step_reviewed;
+    double epoch_time, last_step, next_step, wall_path, sweep_speed, push_work;
     double energy_start, potential_start, most_energy, skin;
     uint64_t pairs;
 } block_head;
@@ -79,16 +79,13 @@ static block_head head_of(const dem_world *w)
     h.features = w->features;
     h.steps = w->steps;
     h.epoch_steps = w->epoch_steps;
-    h.exact_then = w->exact_then;
+    h.step_reviewed = w->step_reviewed;
     h.epoch_time = w->epoch_time;
     h.last_step = w->last_step;
     h.next_step = w->next_step;
     h.wall_path = w->wall_path;
     h.sweep_speed = w->sweep_speed;
     h.push_work = w->push_work;
-    h.stable_step = w->stable_step;
-    h.crude_then = w->crude_then;
-    h.damping_most = w->damping_most;
     h.energy_start = w->energy_start;
     h.potential_start = w->potential_start;
     h.most_energy = w->views.most_energy;
@@ -101,16 +98,13 @@ static void take_head(dem_world *w, const block_head *h)
 {
     w->steps = h->steps;
     w->epoch_steps = h->epoch_steps;
-    w->exact_then = h->exact_then;
+    w->step_reviewed = h->step_reviewed;
     w->epoch_time = h->epoch_time;
     w->last_step = h->last_step;
     w->next_step = h->next_step;
     w->wall_path = h->wall_path;
     w->sweep_speed = h->sweep_speed;
     w->push_work = h->push_work;
-    w->stable_step = h->stable_step;
-    w->crude_then = h->crude_then;
-    w->damping_most = h->damping_most;
     w->energy_start = h->energy_start;
     w->potential_start = h->potential_start;
     w->views.most_energy = h->most_energy;

@@ -10,6 +10,13 @@ static void put_vec(dem_json_writer *w, const char *key, dem_vec3 v)
     dem_json_put_numbers(w, key, (double[]){v.x, v.y, v.z}, 3);
 }
 
+// an object with each member on a line of its own
+static void open_map(dem_json_writer *w, const char *key)
+{
+    dem_json_open_object(w, key);
+    w->line_depth = w->depth;
+}
+
 // a number that was not given has no key
 static void put_known(dem_json_writer *w, const char *key, double value)
 {
@@ -65,7 +72,7 @@ static void put_domain(dem_json_writer *w, const dem_domain_def *domain)
 
 static void put_materials(dem_json_writer *w, const dem_scene *scene)
 {
-    dem_json_open_object(w, "materials");
+    open_map(w, "materials");
     for (size_t i = 0; i < scene->material_count; i++) {
         const dem_material *m = &scene->materials[i];
         dem_json_open_object(w, text_of(m->name));
@@ -152,7 +159,7 @@ static void put_spheres(dem_json_writer *w, const dem_clump *clump, double densi
 
 static void put_shapes(dem_json_writer *w, const dem_scene *scene)
 {
-    dem_json_open_object(w, "shapes");
+    open_map(w, "shapes");
     for (size_t i = 0; i < scene->shape_count; i++) {
         const dem_shape_def *shape = &scene->shapes[i];
         dem_json_open_object(w, text_of(shape->name));
@@ -330,7 +337,7 @@ static void put_form(dem_json_writer *w, const dem_wall_def *wall, const dem_wal
 
 static dem_status put_walls(dem_json_writer *w, const dem_scene *scene, dem_error *error)
 {
-    dem_json_open_object(w, "walls");
+    open_map(w, "walls");
     for (size_t i = 0; i < scene->wall_count; i++) {
         const dem_wall_def *wall = &scene->walls[i];
         if (wall->kind == DEM_WALL_MESH && !wall->mesh_file)

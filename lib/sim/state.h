@@ -34,6 +34,7 @@ enum {
     X(double, radius, 1, "m", true, "bounding radius")                                                                 \
     X(uint32_t, shape, 1, "-", true, "index of the shape")                                                             \
     X(double, wall_limit, 1, "m", (w)->walls.count > 0, "path at which the wall lists are looked at")                  \
+    X(double, strain_limit, 1, "-", (w)->features.watch, "strain at which the step is looked at")                      \
     X(int32_t, wraps, 3, "-", (w)->periodic, "how often a periodic side was crossed")                                  \
     X(double, before, 8, "kg m/s, kg m2/s", (w)->damping.local > 0 || (w)->damping.viscous > 0,                        \
       "momenta before the contacts")
@@ -168,14 +169,14 @@ struct dem_world {
     dem_tally *tallies;                      ///< [segments * (1 + DEM_WALL_FORMS)]
     dem_motion_tally *motion_tallies;        ///< [segments]
     double push_work;
-    double stable_step, crude_then; ///< the bound, and its cheap twin, when last looked at
-    double damping_most;            ///< largest c / k of any contact so far [s]
-    uint64_t exact_then;
+    uint64_t step_reviewed; ///< when all bodies were last asked for their step
     double energy_start, potential_start; ///< [J]
     // work space
     dem_search *search;
     uint32_t *asked; ///< [padded]
     size_t asked_count, *part_asked;
+    dem_strained *strained; ///< [padded] (watch)
+    size_t strained_count, *part_strained;
     size_t *parts; ///< [threads + 1] first segment of each
     dem_fresh *fresh;
     size_t fresh_count, fresh_capacity;

@@ -103,7 +103,7 @@ static void set_mass(dem_template *t, const form *f)
     t->centred = f->count == 1 && v3_norm(f->balls[0].centre) <= CENTRED * f->balls[0].radius;
     t->isotropic = alike(f->inertia, t->centred ? ROUND : EQUAL);
     bool rename = !t->isotropic && first_is_best(f->inertia);
-    // x, y, z -> z, x, y is a third of a turn about (1, 1, 1)
+    // the axes x, y, z become z, x, y by a third of a turn about (1, 1, 1)
     t->to_run = rename ? (dem_quat){0.5, -0.5, -0.5, -0.5} : (dem_quat){1, 0, 0, 0};
     t->mass = f->mass;
     t->inverse_mass = 1 / f->mass;

@@ -1,19 +1,17 @@
 #include "sim/timestep.h"
 
-#include <stdlib.h>
 #include <string.h>
 
 #include "base/status.h"
-#include "sim/measure.h"
+#include "sim/scene.h"
+#include "sim/touch.h"
 
-enum {
-    REVIEW_EVERY = 100, // steps between looks at an automatic step
-    EXACT_EVERY = 1000, // ... and at its bound where the cheap one does not suffice
-};
+enum { REVIEW_EVERY = 1000 }; // steps between questions whether the step may be raised
 
 static const double SAFETY = 0.8, SAFETY_HERTZ = 0.5;
-static const double GROW_FROM = 1.1; // a step is not raised for less
-static const double CRUDE_GROWTH = 1.25;
+static const double GROW_FROM = 1.1;  // a step is not raised for less
+static const double LOWER_BY = 0.95;  // of what is allowed, so that it need not be lowered again at once
+static const double LEAST_REST = 0.1; // of the whole room, that a body may use before it is asked again
 
 double dem_largest_eigenvalue6(double a[6][6])
 {
@@ -53,23 +51,19 @@ double dem_largest_eigenvalue6(double a[6][6])
 
 // ---- the bound
 
-static double limit_of(double eigenvalue, double damping_per_stiffness)
+// the h at which h^2 k + 2 h c = 4
+static double limit_of(double k, double c)
 {
-    double root = sqrt(eigenvalue), z = damping_per_stiffness * root / 2;
-    return eigenvalue > 0 ? 2 / root * (sqrt(1 + z * z) - z) : INFINITY;
+    return k > 0 || c > 0 ? 4 / (c + sqrt(c * c + 4 * k)) : INFINITY;
 }
 
-typedef double matrix6[6][6];
+// one body's contacts, in its axes and in units of its masses
+typedef struct body_problem {
+    double stiffness[6][6], damping[6][6];
+} body_problem;
 
-typedef struct assembly {
-    matrix6 *stiffness; // [bodies] in the body's axes, scaled by masses
-    bool listed;
-    double damping; // largest c / k
-} assembly;
-
-// k_n n n^T + k_t (1 - n n^T) at `arm`, seen in the body's axes and in units of its masses
-static void add_stiffness(const dem_world *w, matrix6 *a, size_t row, dem_vec3 arm, dem_vec3 n, double kn, double kt,
-                          double times)
+// k_n n n^T + k_t (1 - n n^T) at `arm`
+static void add_stiffness(const dem_world *w, double a[6][6], size_t row, dem_vec3 arm, dem_vec3 n, double kn, double kt)
 {
     const double *inertia = w->bodies.inertia + DEM_ROW * row;
     dem_quat q = body_orientation(&w->bodies, row);
@@ -78,79 +72,110 @@ static void add_stiffness(const dem_world *w, matrix6 *a, size_t row, dem_vec3 a
     axis[2] = v3_cross(axis[0], axis[1]);
     for (int k = 0; k < 3; k++) {
         dem_vec3 u = axis[k], m = v3_cross(r, u);
-        double b[6] = {u.x, u.y, u.z, m.x, m.y, m.z}, stiffness = times * (k == 0 ? kn : kt);
+        double b[6] = {u.x, u.y, u.z, m.x, m.y, m.z}, stiffness = k == 0 ? kn : kt;
         for (int i = 0; i < 6; i++)
             b[i] *= sqrt(inertia[i < 3 ? 0 : i - 2]);
         for (int i = 0; i < 6; i++)
             for (int j = 0; j < 6; j++)
-                (*a)[i][j] += stiffness * b[i] * b[j];
+                a[i][j] += stiffness * b[i] * b[j];
     }
 }
 
-// overlap of a Hertz contact that is to be expected: of the present speed [m]
-static double expected_overlap(const dem_world *w, const dem_contact_item *item, const dem_contact_record *r, bool wall,
-                               double reduced)
+// 1 / mass that a contact at `arm` sees of one body
+static double inverse_mass(const dem_world *w, size_t row, dem_vec3 arm, dem_vec3 n)
 {
-    double speed = body_stride(&w->bodies, item->a, 1) + (wall ? w->sweep_speed : body_stride(&w->bodies, item->b, 1));
-    double inverse = w->bodies.inertia[DEM_ROW * item->a] + (wall ? 0 : w->bodies.inertia[DEM_ROW * item->b]);
-    const double *law = w->laws.rows + (size_t)LAW_SLOTS * item->law;
-    double impact = pow(15 * speed * speed / (8 * inverse * law[LAW_HERTZ] * sqrt(reduced)), 0.4);
-    return fmax(r->overlap, impact);
+    const double *inertia = w->bodies.inertia + DEM_ROW * row;
+    if (!w->features.local_mass)
+        return inertia[0];
+    dem_vec3 m = quat_unrotate(body_orientation(&w->bodies, row), v3_cross(arm, n));
+    return inertia[0] + m.x * m.x * inertia[1] + m.y * m.y * inertia[2] + m.z * m.z * inertia[3];
 }
 
-static void visit_stiffness(void *user, dem_world *w, int form, const dem_contact_item *item,
-                            const dem_contact_record *r)
+// one contact of a body that stands at `arm` [0] from it and, of a pair, [1] from the other
+static void add_contact(const dem_world *w, body_problem *p, const dem_touch *t, const double *law, const uint32_t row[2],
+                        const dem_vec3 arm[2], bool wall)
 {
-    assembly *all = user;
-    bool wall = form >= 0;
-    if (!r->touches && !all->listed)
-        return;
-    const double *law = w->laws.rows + (size_t)LAW_SLOTS * item->law;
-    double ra = w->templates.spheres[item->sphere_a][3] * body_scale(&w->bodies, item->a);
-    double rb = wall ? ra : w->templates.spheres[item->sphere_b][3] * body_scale(&w->bodies, item->b);
-    double area = wall ? ra : fmin(ra, rb) * fmin(ra, rb) / (ra + rb), radius = 0;
-    if (law[LAW_HERTZ] > 0) {
-        double reduced = wall ? ra : ra * rb / (ra + rb);
-        radius = sqrt(reduced * fmax(all->listed ? expected_overlap(w, item, r, wall, reduced) : r->overlap, 0));
-    }
-    double kn = law_stiffness(law, area, radius), kt = law_slide_stiffness(law, area, radius);
-    dem_vec3 n = v3(r->normal[0], r->normal[1], r->normal[2]);
-    dem_vec3 arm = v3(r->point_a[0], r->point_a[1], r->point_a[2]);
-    add_stiffness(w, &all->stiffness[item->a], item->a, arm, n, kn, kt, wall ? 1 : 2);
+    double mass = inverse_mass(w, row[0], arm[0], t->normal);
     if (!wall)
-        add_stiffness(w, &all->stiffness[item->b], item->b, v3(r->point_b[0], r->point_b[1], r->point_b[2]), n, kn, kt,
-                      2);
-    double m = r->reduced_mass;
-    if (kn > 0)
-        all->damping = fmax(all->damping, (law[LAW_RATE] * m + law[LAW_ZETA] * sqrt(kn * m)) / kn);
-    if (kt > 0)
-        all->damping = fmax(all->damping, (law[LAW_SLIDE_RATE] * m + law[LAW_SLIDE_ZETA] * sqrt(kt * m)) / kt);
+        mass += inverse_mass(w, row[1], arm[1], t->normal);
+    mass = 1 / mass;
+    double radius = law[LAW_HERTZ] > 0 ? sqrt(t->reduced * larger(t->overlap, 0)) : 0, times = wall ? 1 : 2;
+    double kn = law_stiffness(law, t->area_length, radius), kt = law_slide_stiffness(law, t->area_length, radius);
+    add_stiffness(w, p->stiffness, row[0], arm[0], t->normal, times * kn, times * kt);
+    if (!w->laws.damped)
+        return;
+    double cn = law[LAW_RATE] * mass + law[LAW_ZETA] * sqrt(kn * mass);
+    double ct = law[LAW_SLIDE_RATE] * mass + law[LAW_SLIDE_ZETA] * sqrt(kt * mass);
+    add_stiffness(w, p->damping, row[0], arm[0], t->normal, times * cn, times * ct);
+}
+
+static const double *law_of(const dem_world *w, const dem_contact_columns *c, size_t at)
+{
+    return w->laws.rows + (c->law ? (size_t)LAW_SLOTS * c->law[at] : 0);
+}
+
+static void add_pairs(const dem_world *w, size_t row, bool listed, body_problem *p)
+{
+    for (size_t i = w->pairs.adjacency_first[row]; i < w->pairs.adjacency_first[row + 1]; i++) {
+        const dem_pair *pair = &w->pairs.items[w->pairs.adjacency[i]];
+        const dem_segment *s = &w->contacts.segments[pair->a / DEM_SEGMENT];
+        for (size_t k = 0; k < pair->count; k++) {
+            dem_touch t = dem_touch_of_pair(w, segment_place(s, pair->start + k));
+            if (!listed && t.overlap <= 0)
+                continue;
+            dem_vec3 from_a = v3_sub(t.point, body_position(&w->bodies, pair->a));
+            dem_vec3 from_b = v3_sub(t.point, v3_add(body_position(&w->bodies, pair->b), t.shift));
+            bool first = pair->a == row;
+            add_contact(w, p, &t, law_of(w, &w->contacts.columns, t.place),
+                        (uint32_t[]){first ? pair->a : pair->b, first ? pair->b : pair->a},
+                        (dem_vec3[]){first ? from_a : from_b, first ? from_b : from_a}, false);
+        }
+    }
+}
+
+static void add_walls(const dem_world *w, size_t row, bool listed, body_problem *p)
+{
+    for (int form = 0; form < DEM_WALL_FORMS; form++) {
+        const dem_contacts *contacts = &w->wall_contacts[form];
+        if (!contacts->segments)
+            continue;
+        const dem_segment *s = &contacts->segments[row / DEM_SEGMENT];
+        for (size_t k = 0; k < s->end - s->begin; k++) {
+            size_t at = segment_place(s, k);
+            if (contacts->columns.a[at] != row)
+                continue;
+            dem_touch t = dem_touch_of_wall(w, (dem_wall_form)form, at);
+            dem_vec3 arm = v3_sub(t.point, body_position(&w->bodies, row));
+            if (t.overlap > 0 || (listed && form != DEM_FORM_MESH))
+                add_contact(w, p, &t, law_of(w, &contacts->columns, at), (uint32_t[]){(uint32_t)row, 0},
+                            (dem_vec3[]){arm, arm}, true);
+        }
+    }
+}
+
+// the largest stable step of one body
+static dem_step_bound body_bound(const dem_world *w, size_t row, bool listed)
+{
+    body_problem p;
+    memset(&p, 0, sizeof p);
+    add_pairs(w, row, listed, &p);
+    add_walls(w, row, listed, &p);
+    double k = dem_largest_eigenvalue6(p.stiffness), c = w->laws.damped ? dem_largest_eigenvalue6(p.damping) : 0;
+    return (dem_step_bound){k, c, limit_of(k, c), row};
 }
 
 dem_status dem_step_stable(dem_world *w, bool listed, dem_step_bound *bound, dem_error *error)
 {
-    assembly all = {.stiffness = dem_alloc_zero(w->bodies.count, sizeof *all.stiffness), .listed = listed};
-    if (!all.stiffness)
-        return dem_fail_memory(error);
-    dem_status status = dem_visit_contacts(w, visit_stiffness, &all, error);
+    (void)error;
+    if (w->mesh_touches)
+        dem_mesh_touch_measure(w, 0, w->segment_count);
     *bound = (dem_step_bound){.step = INFINITY};
-    for (size_t row = 0; status == DEM_OK && row < w->bodies.count; row++) {
-        double trace = 0;
-        for (int i = 0; i < 6; i++)
-            trace += all.stiffness[row][i][i];
-        if (trace <= bound->eigenvalue)
-            continue; // the largest eigenvalue is not larger than the trace
-        double largest = dem_largest_eigenvalue6(all.stiffness[row]);
-        if (largest > bound->eigenvalue) {
-            bound->eigenvalue = largest;
-            bound->row = row;
-        }
+    for (size_t row = 0; row < w->bodies.count; row++) {
+        dem_step_bound own = body_bound(w, row, listed);
+        if (own.step < bound->step)
+            *bound = own;
     }
-    free(all.stiffness);
-    w->damping_most = fmax(w->damping_most, all.damping);
-    bound->damping = all.damping * sqrt(bound->eigenvalue) / 2;
-    bound->step = limit_of(bound->eigenvalue, all.damping);
-    return status;
+    return DEM_OK;
 }
 
 double dem_world_critical_step(dem_world *w)
@@ -211,28 +236,6 @@ static double safety(const dem_world *w)
     return isnan(w->time_def.safety) ? (w->features.hertz ? SAFETY_HERTZ : SAFETY) : w->time_def.safety;
 }
 
-// an upper bound of L in the time of a look: the listed contacts of a body times the worst that one can do
-static double crude_eigenvalue(const dem_world *w)
-{
-    double most = 0;
-    size_t n = w->laws.material_count;
-    for (size_t row = 0; row < w->bodies.count; row++) {
-        size_t contacts = 0;
-        for (size_t i = w->pairs.adjacency_first[row]; i < w->pairs.adjacency_first[row + 1]; i++)
-            contacts += w->pairs.items[w->pairs.adjacency[i]].count;
-        const dem_template *t = &w->templates.items[w->bodies.shape[row]];
-        double scale = body_scale(&w->bodies, row), r = t->radius_max * scale, worst = 0;
-        for (uint32_t other = 0; other < n; other++) {
-            const double *law = laws_between(&w->laws, t->material, other);
-            if (law)
-                worst = fmax(worst, law_stiffness(law, r / 2, r) + 2 * law_slide_stiffness(law, r / 2, r));
-        }
-        double inverse = 1 / (t->least_mass * scale * scale * scale);
-        most = fmax(most, 2 * (double)contacts * worst * inverse);
-    }
-    return most;
-}
-
 static void set_step(dem_world *w, double step)
 {
     if (step == w->next_step)
@@ -248,40 +251,68 @@ double dem_step_guess(const dem_world *w)
     return isfinite(step) ? step : w->time_def.end > 0 ? w->time_def.end / 1000 : 1e-3;
 }
 
-static dem_status choose(dem_world *w, double *step, dem_error *error)
+// what a body may strain before it is asked: nothing is known of it
+static double strain_unasked(const dem_world *w)
 {
-    dem_step_bound bound;
-    DEM_TRY(dem_step_stable(w, true, &bound, error));
-    w->crude_then = crude_eigenvalue(w);
-    w->exact_then = w->steps;
-    w->stable_step = bound.step;
-    *step = fmin(safety(w) * bound.step, dem_step_guess(w));
-    return DEM_OK;
+    return 4 * safety(w) * safety(w);
+}
+
+static void forget_limits(dem_world *w)
+{
+    for (size_t row = 0; row < w->bodies.count; row++)
+        w->bodies.strain_limit[row] = strain_unasked(w);
 }
 
 dem_status dem_step_choose(dem_world *w, dem_error *error)
 {
     double step = w->time_def.step;
-    if (!(step > 0))
-        DEM_TRY(choose(w, &step, error));
-    w->last_step = w->next_step = step;
+    if (w->features.watch) {
+        dem_step_bound bound;
+        DEM_TRY(dem_step_stable(w, false, &bound, error));
+        step = smaller(safety(w) * bound.step, dem_step_guess(w));
+        forget_limits(w);
+    }
+    w->next_step = step;
     return DEM_OK;
+}
+
+// lowers the step where a body's own problem asks for it, and allows it the strain that its present contacts leave
+static double ask_body(dem_world *w, const dem_strained *s, double step)
+{
+    dem_step_bound own = body_bound(w, s->row, false);
+    double allowed = safety(w) * own.step, h = step <= allowed ? step : LOWER_BY * allowed;
+    // of 4 safety^2, what the contacts take by their eigenvalues; others may come until the rest is used up
+    double taken = h * (h * own.eigenvalue + 2 * own.damping), most = strain_unasked(w);
+    w->bodies.strain_limit[s->row] = s->strain + larger(most - taken, LEAST_REST * most);
+    return h;
+}
+
+static double raised_step(dem_world *w, double step, dem_error *error)
+{
+    dem_step_bound bound;
+    if (dem_step_stable(w, false, &bound, error) != DEM_OK)
+        return step;
+    double may = smaller(safety(w) * bound.step, dem_step_guess(w));
+    return may > GROW_FROM * step || may < step ? may : step;
 }
 
 dem_status dem_step_review(dem_world *w, dem_error *error)
 {
-    if (w->time_def.step > 0 || w->steps % REVIEW_EVERY != 0)
+    if (!w->features.watch)
         return DEM_OK;
-    double begin = dem_clock(), crude = crude_eigenvalue(w), step = dem_step_guess(w);
-    // where even the cheap bound asks for no smaller step, the other need not be known
-    if (safety(w) * limit_of(crude, w->damping_most) < step) {
-        if (crude > CRUDE_GROWTH * w->crude_then || w->steps - w->exact_then >= EXACT_EVERY)
-            DEM_TRY(choose(w, &step, error));
-        else
-            step = fmin(step, safety(w) * w->stable_step);
-    }
-    if (step < w->next_step || step > GROW_FROM * w->next_step)
-        set_step(w, step);
+    bool again = w->steps % REVIEW_EVERY == 0;
+    if (!w->strained_count && !again)
+        return DEM_OK;
+    double begin = dem_clock(), step = w->next_step;
+    for (size_t i = 0; i < w->strained_count; i++)
+        step = ask_body(w, &w->strained[i], step);
+    w->strained_count = 0;
+    if (again)
+        step = raised_step(w, step, error);
+    // a lower step strains less: what bodies were allowed stays good
+    if (step > w->next_step)
+        forget_limits(w);
+    set_step(w, step);
     w->clocks[DEM_PASS_STEP].seconds += dem_clock() - begin;
     return DEM_OK;
 }

@@ -1,22 +1,27 @@
 /// The time step.
 ///
-/// Stability: with M the masses and K the stiffness of all contacts, central differences are stable below 2 / sqrt(L),
-/// L the largest eigenvalue of M^-1 K. Since 1/2 k (u_p - u_q)^2 <= k (u_p^2 + u_q^2), L is at most the largest
-/// eigenvalue of the bodies' own 6 x 6 problems, contacts with other bodies counted twice: a bound, not an estimate.
-/// Dashpots act on velocities half a step old: the limit falls by sqrt(1 + z^2) - z, z = 1/2 sqrt(L) max(c / k); by
-/// less where c is corrected for that (see law/normal.h), so this is a bound too.
+/// Stability: with M the masses, K the stiffness and C the dashpots of all contacts, central differences with dashpots
+/// on velocities half a step old are stable while h^2 K + 2 h C < 4 M. (One contact: h < 2 (sqrt(1 + z^2) - z) / w.)
+/// Since 1/2 k (u_p - u_q)^2 <= k (u_p^2 + u_q^2), it suffices that this holds for each body's own 6 x 6 problem with
+/// contacts with other bodies counted twice: with the largest eigenvalues of M^-1 K and M^-1 C of each, a bound and not
+/// an estimate. (Normal dashpots are corrected for the old velocity, law/normal.h, and so take less than C.)
 ///
 /// Accuracy: an automatic step also takes the shortest contact in a number of steps (`contact_steps`).
+///
+/// An automatic step is watched in every step: the contact loop sums for each body what its touching contacts take at
+/// most, its *strain*, sum of (h^2 k + 2 h c) / m_least. Only where that exceeds what the body was allowed, its own
+/// problem is solved, and the step lowered where that is due. From time to time all bodies are asked whether it may be
+/// raised.
 #ifndef DEM_SIM_TIMESTEP_H
 #define DEM_SIM_TIMESTEP_H
 
 #include "sim/state.h"
 
 typedef struct dem_step_bound {
-    double eigenvalue; ///< L [1/s^2]
-    double damping;    ///< z [-]
-    double step;       ///< the limit with both [s]; INFINITY without contacts
-    size_t row;        ///< the body that sets it
+    double eigenvalue; ///< of M^-1 K, of the body that sets the bound [1/s^2]
+    double damping;    ///< of M^-1 C, of the same body [1/s]
+    double step;       ///< the limit [s]; INFINITY without contacts
+    size_t row;        ///< that body
 } dem_step_bound;
 
 /// The bound for the contacts that touch, or for all that are listed and may do so before the lists change.
@@ -31,7 +36,7 @@ double dem_step_guess(const dem_world *world);
 /// Sets the first step, now that contacts are listed.
 dem_status dem_step_choose(dem_world *world, dem_error *error);
 
-/// Looks at an automatic step again from time to time.
+/// Takes up the strained bodies of the last step; looks at an automatic step again from time to time.
 dem_status dem_step_review(dem_world *world, dem_error *error);
 
 /// Largest eigenvalue of a symmetric matrix (cyclic Jacobi); destroys it.

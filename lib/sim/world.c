@@ -58,6 +58,7 @@ static void set_features(dem_world *w, const dem_body_def *defs, size_t count)
 {
     dem_features *f = &w->features;
     *f = w->laws.needs;
+    f->watch = !(w->time_def.step > 0);
     f->ledger = w->ledger && (w->laws.damped || f->friction || w->walls.move);
     f->periodic = w->periodic;
     f->moving = w->walls.move;
@@ -93,11 +94,13 @@ static dem_status make_lists(dem_world *w, dem_error *error)
     w->tallies = dem_alloc_zero(w->segment_count * (1 + DEM_WALL_FORMS), sizeof *w->tallies);
     w->motion_tallies = dem_alloc_zero(w->segment_count, sizeof *w->motion_tallies);
     w->asked = dem_alloc(w->bodies.padded, sizeof *w->asked);
+    w->strained = dem_alloc(w->features.watch ? w->bodies.padded : 0, sizeof *w->strained);
+    w->part_strained = dem_alloc_zero((size_t)w->threads + 1, sizeof *w->part_strained);
     w->part_asked = dem_alloc_zero((size_t)w->threads + 1, sizeof *w->part_asked);
     w->parts = dem_alloc_zero((size_t)w->threads + 1, sizeof *w->parts);
     w->candidates = dem_alloc_zero((size_t)w->threads, sizeof *w->candidates);
     if ((used(w, DEM_FORM_MESH) && !w->mesh_touches) || !w->tallies || !w->motion_tallies || !w->asked ||
-        !w->part_asked || !w->parts || !w->candidates)
+        !w->part_asked || !w->strained || !w->part_strained || !w->parts || !w->candidates)
         return dem_fail_memory(error);
     size_t longest = 0;
     for (size_t i = 0; i < w->templates.count; i++)
@@ -235,7 +238,7 @@ static void contact_pass(dem_world *w, size_t begin, size_t end, double kick)
         if (s->begin < s->end)
             w->instance->pairs(
                 w->features, &rows,
-                &(dem_contact_job){w->contacts.columns, s->begin, s->end, w->last_step, kick, &w->tallies[i], NULL});
+                &(dem_contact_job){w->contacts.columns, s->begin, s->end, w->last_step, kick, w->next_step, &w->tallies[i], NULL});
     }
 }
 
@@ -248,17 +251,18 @@ static void wall_pass(dem_world *w, size_t begin, size_t end, double kick)
             const dem_segment *s = &contacts->segments[i];
             if (s->begin < s->end)
                 w->wall_instance->walls[form](w->features, &rows,
-                                              &(dem_contact_job){contacts->columns, s->begin, s->end, w->last_step,
-                                                                 kick, &w->tallies[(1 + form) * w->segment_count + i],
+                                              &(dem_contact_job){contacts->columns, s->begin, s->end, w->last_step, kick, w->next_step, &w->tallies[(1 + form) * w->segment_count + i],
                                                                  NULL});
         }
     }
 }
 
-static void motion_pass(dem_world *w, size_t begin, size_t end, double kick, uint32_t *asked, size_t *asked_count)
+static void motion_pass(dem_world *w, size_t begin, size_t end, double kick, size_t part)
 {
     dem_rows rows = world_rows(w);
-    *asked_count = 0;
+    uint32_t *asked = w->asked + begin * DEM_SEGMENT;
+    size_t *asked_count = &w->part_asked[part], *strained_count = &w->part_strained[part];
+    *asked_count = *strained_count = 0;
     bool damped = w->damping.local > 0 || w->damping.viscous > 0, tally = damped && w->ledger;
     // the last part moves the rows that fill up, too
     size_t last = end == w->segment_count ? w->bodies.padded : end * DEM_SEGMENT;
@@ -280,9 +284,12 @@ static void motion_pass(dem_world *w, size_t begin, size_t end, double kick, uin
                               .vector = w->damping.local_frame == DEM_LOCAL_VECTOR,
                               .exclude_gravity = w->damping.exclude_gravity,
                               .tally = tally && segment < w->segment_count ? &w->motion_tallies[segment] : NULL,
+                              .strain_limit = w->bodies.strain_limit,
+                              .strained = w->strained + begin * DEM_SEGMENT + *strained_count,
                               .asked = asked + *asked_count};
         w->kernels->move(&rows, &job);
         *asked_count += job.asked_count;
+        *strained_count += job.strained_count;
         from = to;
     }
 }
@@ -325,7 +332,7 @@ static void step_part(dem_world *w, size_t part, double kick)
         push_bodies(w, kick, 1);
     }
     double t3 = dem_clock();
-    motion_pass(w, begin, end, kick, w->asked + begin * DEM_SEGMENT, &w->part_asked[part]);
+    motion_pass(w, begin, end, kick, part);
     double t4 = dem_clock();
     if (part == 0) {
         w->clocks[DEM_PASS_WALLS].seconds += t1 - t0;
@@ -336,11 +343,14 @@ static void step_part(dem_world *w, size_t part, double kick)
 
 static void join_asked(dem_world *w)
 {
-    w->asked_count = 0;
+    w->asked_count = w->strained_count = 0;
     for (size_t part = 0; part < (size_t)w->threads; part++) {
         const uint32_t *from = w->asked + w->parts[part] * DEM_SEGMENT;
         for (size_t i = 0; i < w->part_asked[part]; i++)
             w->asked[w->asked_count++] = from[i];
+        const dem_strained *strained = w->strained + w->parts[part] * DEM_SEGMENT;
+        for (size_t i = 0; i < w->part_strained[part]; i++)
+            w->strained[w->strained_count++] = strained[i];
     }
 }
 

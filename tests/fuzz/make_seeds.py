@@ -1,5 +1,6 @@
 #!/usr/bin/python3
-"""Writes small valid files to start the fuzzers from: make_seeds.py FOLDER -> FOLDER/{stl,obj,ply,off,sniff,checkpoint}/"""
+"""Writes small valid files to start the fuzzers from: make_seeds.py FOLDER -> FOLDER/{stl,obj,ply,off,sniff,scene,csv,
+checkpoint}/"""
 import hashlib
 import os
 import struct
@@ -51,6 +52,27 @@ seeds['sniff'] = [b'd' + s for some in seeds.values() for s in some]
 header = b'{"title": "t", "scene": "%s", "time": 0.5, "step": 7, "frames": 1, "rows": 2, "byte_order": "little"}' % (b'0f' * 32)
 whole = b'dem-checkpoint/1\n%020d %020d\n%sstate' % (len(header), 5, header)
 seeds['checkpoint'] = [b'1' + header, b'0' + whole + hashlib.sha256(whole).hexdigest().encode() + b'\n']
+head = """{ "schema": "dem-scene/1", // a comment
+"gravity": [0, 0, "-9.81 m/s2"], "time": {"end": 1, "step": "auto", "safety": 0.8, "contact_steps": 10},
+"domain": {"min": [0, 0, null], "max": ["1 m", 1, null], "periodic": [true, false, false], "leaving": "ignore"},
+"materials": {"a": {"density": 2500, "young": "1 GPa", "poisson": 0.2}},
+"contacts": [{"between": ["a", "a"], "effective_mass": "body", "normal": {"law": "%s", %s "restitution": 0.5},
+"friction": {"coefficient": 0.5}}], "damping": {"local": 0.1, "local_frame": "vector"}, """
+tail = """"shapes": {"s": {"sphere": {"radius": 0.1}, "material": "a"}, "p": {"material": "a",
+"spheres": [[0, 0, 0, 1], [1, 0, 0, 1]]}, "q": {"material": "a", "spheres": [[0, 0, 0, 1]], "mass": 1,
+"inertia": [1, 1, 1]}}, "bodies": [{"shape": "s", "position": [0, 0, 1], "orientation": [1, 2, 3, 4], "size": "1 cm"},
+{"fill": {"mix": [{"shape": "p", "share": 2, "size": {"law": "lognormal", "median": 1, "sigma": 0.1, "by": "mass"}},
+{"shape": "s", "size": {"law": "table", "sizes": [1, 2], "passing": [0, 1]}}, {"shape": "q", "size": {"law": "uniform",
+"min": 1, "max": 2}}], "box": [[0, 0, 0], [1, 1, 1]], "count": 5, "seed": 3, "gap": 1e-6}}],
+"walls": {"w": {"plane": {"point": [0, 0, 0], "normal": [0, 1, 1]}, "material": "a", "motion": {"rotate":
+{"axis": [0, 1, 2], "rate": "10 rpm"}, "translate": {"velocity": [1, 0, 0]}}}, "b": {"box": {"min": [0, 0, 0],
+"max": [1, 1, 1]}, "material": "a"}, "c": {"cylinder": {"point": [0, 0, 0], "axis": [0, 0, 1], "radius": 1,
+"side": "outside"}, "material": "a"}}, /* and */ "output": {"frames": "5 ms", "checkpoint": "60 s wall",}}"""
+scene = head % ('linear', '"stiffness": 1e4,') + tail
+seeds['scene'] = [scene.encode(), (head % ('hertz', '') + tail).encode(), b'{"schema": "dem-scene/1"}',
+                  b'\xfftime.end=5 ms\n' + scene.encode(), b'\xffbodies[0].scale=2\n{"schema": "dem-scene/1"}']
+seeds['csv'] = [b'shape,x,y,z\nrock,1,2,3\n', b'\xef\xbb\xbf# c\r\nshape,x,y,z,qw,qx,qy,qz,vx,vy,vz,wx,wy,wz,scale,id\r\n'
+                b'"a, ""b""",1.2345678901234567,-2e-3,3,1,2,3,4,5,6,7,8,9,10,0.5,"x"\r\n']
 for name, some in seeds.items():
     os.makedirs(os.path.join(sys.argv[1], name), exist_ok=True)
     for i, seed in enumerate(some):

@@ -69,7 +69,7 @@ typedef struct dem_pair_law {
 typedef struct dem_shape_def {
     const char *name;
     const char *clump_file;  ///< resolved path; NULL: none
-    const dem_clump *clump;
+    const dem_clump *clump;  ///< also what was read from `clump_file`
     double sphere_radius;    ///< [m]; 0: not a sphere
     uint32_t material;
 } dem_shape_def;

@@ -87,9 +87,11 @@ DEM_INLINE friction_law friction(const dem_features f, const wide *law, const no
     wide part = cap * wide_rsqrt(size2), per_stiffness = wide_all(1) / stiffness;
     wide3 capped = scale3(force, part), left = capped;
     if (f.slide_damping) {
-        // the spring holds what the dashpot does not, but never more than the cap
-        wide3 rest = along3(capped, zero - damping, slip);
-        left = select3(wide_less(cap * cap, dot3(rest, rest)), capped, rest);
+        // What the spring keeps. With a restitution all it has: a dashpot behind a slider sees no slip. With a rate
+        // what the dashpot leaves of the cap (as LAMMPS does). Beyond the cap, the capped force.
+        wide3 own = scale3(spring, stiffness), rest = along3(capped, zero - damping, slip);
+        left = !f.rate ? own : !f.restitution ? rest : select3(wide_less(zero, law[LAW_SLIDE_RATE]), rest, own);
+        left = select3(wide_less(cap * cap, dot3(left, left)), capped, left);
     }
     force = select3(slides, capped, force);
     spring = select3(slides, scale3(left, per_stiffness), spring);
