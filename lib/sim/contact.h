@@ -346,15 +346,19 @@ DEM_INLINE void contact_law(const dem_features f, const dem_rows *rows, const de
     wide overlap = wide_load(batch->at[AT_OVERLAP] + g);
     wide_mask on = wide_less(zero, overlap);
     wide3 n = get3(batch, AT_NORMAL, g), v = get3(batch, AT_VELOCITY, g);
-    wide vn = dot3(v, n), mass = zero, reduced = zero, area = zero, step = wide_all(job->last_step);
-    if (damped(f))
-        mass = wide_all(1) / wide_load(batch->at[AT_MASS] + g);
+    wide vn = dot3(v, n), inverse_mass = zero, mass = zero, reduced = zero, area = zero,
+         step = wide_all(job->last_step);
+    step_back back = {step, wide_all(job->last_step > 0 ? 1 / job->last_step : 1e150)};
+    if (damped(f)) {
+        inverse_mass = wide_load(batch->at[AT_MASS] + g);
+        mass = wide_all(1) / inverse_mass;
+    }
     if (f.hertz)
         reduced = wide_load(batch->at[AT_REDUCED] + g);
     if (f.young)
         area = wide_load(batch->at[AT_AREA] + g);
     normal_law normal = normal_elastic(f, law, overlap, reduced, area);
-    normal_damp(f, law, &normal, mass, vn);
+    normal_damp(f, law, &normal, inverse_mass, mass, overlap, vn, back);
 
     wide weight = f.weighted ? wide_load(c->weight + at) : wide_all(1);
     wide3 force = {zero, zero, zero}, spring = force;

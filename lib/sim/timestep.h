@@ -4,7 +4,7 @@
 /// on velocities half a step old are stable while h^2 K + 2 h C < 4 M. (One contact: h < 2 (sqrt(1 + z^2) - z) / w.)
 /// Since 1/2 k (u_p - u_q)^2 <= k (u_p^2 + u_q^2), it suffices that this holds for each body's own 6 x 6 problem with
 /// contacts with other bodies counted twice: with the largest eigenvalues of M^-1 K and M^-1 C of each, a bound and not
-/// an estimate.
+/// an estimate. (Normal dashpots are corrected for the old velocity, law/normal.h, and so take less than C.)
 ///
 /// Accuracy: an automatic step also takes the shortest contact in a number of steps (`contact_steps`).
 ///
