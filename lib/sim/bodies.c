@@ -116,7 +116,8 @@ static void put_body(dem_world *w, size_t row, const dem_body_def *def)
     double m = b->inertia[DEM_ROW * row + 5];
     memcpy(momentum, (double[]){m * def->velocity.x, m * def->velocity.y, m * def->velocity.z, l.x, l.y, l.z},
            6 * sizeof *momentum);
-    b->limit[row] = b->path_then[row] = -1;
+    b->limit[row] = -1;
+    b->path_then[row] = -INFINITY;  // a search is due, however wide the skin
     if (b->strain_limit)
         b->strain_limit[row] = 0;
     if (b->wall_limit)

@@ -1,11 +1,13 @@
 #include "sim/contacts.h"
 
-#include <omp.h>
+#include <stdatomic.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "base/status.h"
 #include "sim/bodies.h"
+
+enum { SEGMENTS_TO_SHARE = 8 };  // dirty ones that are worth more than one thread
 
 static size_t to_blocks(size_t count)
 {
@@ -327,6 +329,29 @@ static bool reserve_slots(dem_world *w, const size_t *needed)
     return contacts->slot_body && dem_bodies_reserve_slots(&w->bodies, total);
 }
 
+typedef struct rebuilding {
+    dem_world *w;
+    const size_t *segments;  // dirty ones
+    size_t count;
+    int parts;
+    atomic_bool failed;
+} rebuilding;
+
+static void rebuild_part(void *user, int part)
+{
+    rebuilding *r = user;
+    if (part >= r->parts)
+        return;
+    list l = {0};
+    size_t parts = (size_t)r->parts, from = r->count * (size_t)part / parts, to = r->count * ((size_t)part + 1) / parts;
+    for (size_t i = from; i < to; i++)
+        if (!rebuild_segment(r->w, r->segments[i], &l)) {
+            r->failed = true;
+            break;
+        }
+    free(l.items);
+}
+
 dem_status dem_contacts_rebuild(dem_world *w, dem_error *error)
 {
     size_t *needed = dem_alloc(2 * w->segment_count, sizeof *needed),
@@ -338,20 +363,17 @@ dem_status dem_contacts_rebuild(dem_world *w, dem_error *error)
     if (good)
         count_needs(w, needed, slots);
     good = good && dem_contacts_reserve(w, &w->contacts, -1, needed);
-    int dirty = 0;
+    rebuilding r = {.w = w, .segments = needed, .parts = 1};
     for (size_t i = 0; good && i < w->segment_count; i++)
         if (w->contacts.segments[i].dirty)
-            needed[dirty++] = i;
-#pragma omp parallel num_threads(w->threads) if (dirty > 8 && w->threads > 1) reduction(&& : good)
-    {
-        list l = {0};
-#pragma omp for schedule(static)
-        for (int i = 0; i < dirty; i++)
-            good = rebuild_segment(w, needed[i], &l) && good;
-        free(l.items);
-    }
+            needed[r.count++] = i;
+    if (r.count > SEGMENTS_TO_SHARE && w->threads > 1) {
+        r.parts = w->threads;
+        dem_team_run(w->team, rebuild_part, &r);
+    } else
+        rebuild_part(&r, 0);
     free(needed);
-    return good ? DEM_OK : dem_fail_memory(error);
+    return good && !r.failed ? DEM_OK : dem_fail_memory(error);
 }
 
 void dem_contacts_add_slots(dem_world *w, size_t begin, size_t end)

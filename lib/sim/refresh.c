@@ -1,11 +1,12 @@
 #include "sim/refresh.h"
 
-#include <omp.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "base/status.h"
 #include "sim/broad.h"
+
+enum { PAIRS_TO_SHARE = 256 };  // expired pairs that are worth more than one thread
 
 static const double HORIZON = 80;                            // steps that a margin should last
 static const double MARGIN_LEAST = 0.01, MARGIN_MOST = 0.15; // of the length that suits the shape
@@ -197,17 +198,32 @@ static void apply(dem_world *w, const dem_fresh *fresh, size_t index)
         pairs->fresh[fresh->pair] = 0;
 }
 
+// a share of the expired pairs
+static void look_at_part(void *user, int part)
+{
+    dem_world *w = user;
+    size_t parts = (size_t)w->fresh_parts, count = w->fresh_count;
+    if ((size_t)part >= parts)
+        return;
+    dem_candidates *c = &w->candidates[part];
+    c->count = 0;
+    c->failed = false;
+    for (size_t i = count * (size_t)part / parts; i < count * ((size_t)part + 1) / parts && !c->failed; i++) {
+        w->fresh[i].thread = (uint32_t)part;
+        c->failed = !look_at_pair(w, &w->fresh[i]);
+    }
+}
+
 dem_status dem_refresh(dem_world *w, dem_error *error)
 {
     bool good = collect_expired(w);
-    for (int t = 0; t < w->threads; t++)
-        w->candidates[t].count = 0;
-    int count = (int)w->fresh_count;
-#pragma omp parallel for schedule(static) num_threads(w->threads) if (count > 256 && w->threads > 1) reduction(&& : good)
-    for (int i = 0; i < count; i++) {
-        w->fresh[i].thread = (uint32_t)omp_get_thread_num();
-        good = look_at_pair(w, &w->fresh[i]) && good;
-    }
+    w->fresh_parts = w->fresh_count > PAIRS_TO_SHARE ? w->threads : 1;
+    if (w->fresh_parts > 1)
+        dem_team_run(w->team, look_at_part, w);
+    else
+        look_at_part(w, 0);
+    for (int part = 0; part < w->fresh_parts; part++)
+        good = good && !w->candidates[part].failed;
     if (!good)
         return dem_fail_memory(error);
     for (size_t i = 0; i < w->fresh_count; i++)

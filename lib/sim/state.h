@@ -6,6 +6,7 @@
 #define DEM_SIM_STATE_H
 
 #include "base/memory.h"
+#include "base/threads.h"
 #include "dem/world.h"
 #include "math/quat.h"
 #include "sim/kernels.h"
@@ -88,6 +89,7 @@ typedef struct dem_candidates {
     uint32_t *pairs; ///< [2 capacity] sphere of a, sphere of b, counted within their shapes
     size_t count, capacity;
     float *work;
+    bool failed;
 } dem_candidates;
 
 typedef struct dem_fresh {
@@ -172,6 +174,7 @@ struct dem_world {
     uint64_t step_reviewed; ///< when all bodies were last asked for their step
     double energy_start, potential_start; ///< [J]
     // work space
+    dem_team *team;
     dem_search *search;
     uint32_t *asked; ///< [padded]
     size_t asked_count, *part_asked;
@@ -180,6 +183,7 @@ struct dem_world {
     size_t *parts; ///< [threads + 1] first segment of each
     dem_fresh *fresh;
     size_t fresh_count, fresh_capacity;
+    int fresh_parts;
     dem_candidates *candidates; ///< [threads]
     dem_push *pushes;
     size_t push_count, push_capacity;

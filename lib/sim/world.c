@@ -1,4 +1,3 @@
-#include <omp.h>
 #include <stdlib.h>
 #include <string.h>
 #include <time.h>
@@ -133,6 +132,9 @@ static dem_status make_state(dem_world *w, const dem_scene *scene, dem_error *er
     DEM_TRY(status);
     if (w->bodies.count < THREADS_FROM)
         w->threads = 1;
+    w->team = dem_team_create(w->threads);
+    if (!w->team)
+        return dem_fail_memory(error);
     w->skin = dem_broad_skin(w);
     DEM_TRY(dem_search_create(w, error));
     if (w->periodic)
@@ -204,6 +206,7 @@ void dem_world_destroy(dem_world *w)
         free(w->candidates[t].pairs);
         free(w->candidates[t].work);
     }
+    dem_team_destroy(w->team);
     dem_views_release(&w->views);
     void *all[] = {w->clumps, w->shape_names, w->shifts, w->mesh_touches, w->tallies,    w->motion_tallies,
                    w->asked,  w->part_asked,  w->parts,  w->fresh,        w->candidates, w->pushes};
@@ -312,8 +315,11 @@ static void push_bodies(dem_world *w, double kick, const double sign)
 }
 
 // seconds of the first thread by pass; the others do the same work beside it
-static void step_part(dem_world *w, size_t part, double kick)
+static void step_part(void *user, int which)
 {
+    dem_world *w = user;
+    size_t part = (size_t)which;
+    double kick = (w->last_step + w->next_step) / 2;
     size_t begin = w->parts[part], end = w->parts[part + 1];
     double t0 = dem_clock();
     if (w->mesh_touches)
@@ -324,12 +330,13 @@ static void step_part(dem_world *w, size_t part, double kick)
     double t1 = dem_clock();
     contact_pass(w, begin, end, kick);
     double t2 = dem_clock();
-#pragma omp barrier
+    dem_team_meet(w->team);
     dem_contacts_add_slots(w, begin * DEM_SEGMENT, end * DEM_SEGMENT);
     if (w->push_count) {
-#pragma omp barrier
-#pragma omp single
-        push_bodies(w, kick, 1);
+        dem_team_meet(w->team);
+        if (part == 0)
+            push_bodies(w, kick, 1);
+        dem_team_meet(w->team);
     }
     double t3 = dem_clock();
     motion_pass(w, begin, end, kick, part);
@@ -370,12 +377,7 @@ static dem_status step_once(dem_world *w, dem_error *error)
     w->wall_path += w->next_step * w->sweep_speed;
     if (w->steps % 64 == 0)
         split_parts(w);
-    if (w->threads == 1)
-        step_part(w, 0, kick);
-    else {
-#pragma omp parallel num_threads(w->threads)
-        step_part(w, (size_t)omp_get_thread_num(), kick);
-    }
+    dem_team_run(w->team, step_part, w);
     if (w->push_count) {
         push_bodies(w, kick, 0);
         w->push_count = 0;
