@@ -6,10 +6,10 @@
 #include "sim/features.h"
 
 typedef struct normal_law {
-    wide elastic;   ///< force of the spring [N]
-    wide force;     ///< with the dashpot [N]
-    wide stiffness; ///< tangent of the spring [N/m]
-    wide radius;    ///< sqrt(R* overlap), of the contact [m] (Hertz only)
+    wide elastic;    ///< force of the spring [N]
+    wide force;      ///< with the dashpot [N]
+    wide stiffness;  ///< tangent of the spring [N/m]
+    wide radius;     ///< sqrt(R* overlap), of the contact [m] (Hertz only)
 } normal_law;
 
 /// R* = R_i R_j / (R_i + R_j)
@@ -62,8 +62,12 @@ DEM_INLINE void normal_damp(const dem_features f, const wide *law, normal_law *n
     if (f.rate || f.restitution) {
         wide half = wide_all(0.5) * vn, gone = overlap * step.inverse;
         wide v = wide_select(wide_less(gone, wide_all(0) - vn), half - gone, vn);
-        if (!f.cut)
-            v = wide_select(wide_less(gone, vn), half + gone, v);
+        if (!f.cut || f.mixed) {
+            wide_mask pulls = wide_less(gone, vn);
+            if (f.cut)  // by another law
+                pulls = wide_and(pulls, wide_less(law[LAW_FLOOR], wide_all(0)));
+            v = wide_select(pulls, half + gone, v);
+        }
         c = c / wide_fma(wide_all(0.25) * step.time, c * inverse_mass, wide_all(1));
         n->force = wide_fnma(c, v, n->force);
     }
