@@ -1,6 +1,8 @@
 // What a wall of triangles is made of, and which of them are near.
 #include "walls.h"
 
+#include "base/level.h"
+
 typedef struct heard {
     int warnings;
     char text[512];
@@ -172,7 +174,6 @@ static void many_pairs_at_once_have_the_bits_of_one(void **state)
 {
     (void)state;
     enum { PAIRS = 1000 };
-    static const char *const names[] = {"plain", "v3", "v4"};
     dem_random r = random_stream(3, 0);
     dem_mesh_wall *wall = wall_of(shape_grain(8));
     static uint32_t ids[PAIRS];
@@ -183,8 +184,8 @@ static void many_pairs_at_once_have_the_bits_of_one(void **state)
         const dem_triangle *t = &wall->triangles[ids[i]];
         centres[i] = i % 4 ? v3_along(t->a, 0.2, random_point(&r)) : v3_scale(v3_add(t->b, t->c), 0.5);
     }
-    for (int k = 0; k < 3; k++) {
-        wall->spots = dem_mesh_spots_choose(names[k]);
+    for (int k = 0; k < DEM_LEVELS; k++) {
+        wall->spots = dem_mesh_spots_choose(dem_level_name(k));
         for (size_t count = 0; wall->spots && count <= PAIRS; count += count < 20 ? 1 : 490) {
             memset(spots, 7, sizeof spots);
             dem_mesh_wall_spots(wall, ids, centres, count, spots);

@@ -1,25 +1,11 @@
-#include <string.h>
-
 #include "clump/pack_kernels.h"
 
-static const dem_pack_kernels *const sets[] = {
-#ifdef DEM_X86
-    &dem_pack_kernels_v4,
-    &dem_pack_kernels_v3,
-#endif
-    &dem_pack_kernels_plain,
-};
+#include "base/level.h"
 
-const dem_pack_kernels *const *dem_pack_kernels_all(size_t *count)
-{
-    *count = sizeof sets / sizeof *sets;
-    return sets;
-}
+static const dem_pack_kernels *const sets[] = DEM_LEVELS_OF(dem_pack_kernels);
 
 const dem_pack_kernels *dem_pack_kernels_choose(const char *name)
 {
-    for (size_t i = 0; i < sizeof sets / sizeof *sets; i++)
-        if ((!name || strcmp(sets[i]->name, name) == 0) && sets[i]->usable())
-            return sets[i];
-    return NULL;
+    int level = dem_level_find(name);
+    return level < 0 ? NULL : sets[level];
 }

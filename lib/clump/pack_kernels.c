@@ -4,13 +4,7 @@
 
 #include <string.h>
 
-#ifndef DEM_KERNELS
-#define DEM_KERNELS plain
-#endif
-#define JOIN_(a, b) a##b
-#define JOIN(a, b) JOIN_(a, b)
-#define TEXT_(a) #a
-#define TEXT(a) TEXT_(a)
+#include "base/level.h"
 
 static const float nowhere = 1e9f;
 
@@ -508,23 +502,7 @@ static void lines(const dem_ball_columns *balls, dem_line_task *task, bool gradi
     task->common = common;
 }
 
-static bool usable(void)
-{
-#if defined(__AVX512F__) && defined(__AVX512BW__)
-    return __builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512bw") &&
-           __builtin_cpu_supports("avx512cd") && __builtin_cpu_supports("avx512dq") &&
-           __builtin_cpu_supports("avx512vl");
-#elif defined(__AVX2__)
-    return __builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma") && __builtin_cpu_supports("bmi") &&
-           __builtin_cpu_supports("bmi2") && __builtin_cpu_supports("popcnt");
-#else
-    return true;
-#endif
-}
-
-const dem_pack_kernels JOIN(dem_pack_kernels_, DEM_KERNELS) = {
-    .name = TEXT(DEM_KERNELS),
-    .usable = usable,
+const dem_pack_kernels DEM_LEVEL_OF(dem_pack_kernels) = {
     .distances = distances,
     .nearest = nearest,
     .nearest_two = nearest_two,

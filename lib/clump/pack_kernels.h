@@ -59,8 +59,6 @@ typedef struct dem_line_task {
 } dem_line_task;
 
 typedef struct dem_pack_kernels {
-    const char *name;
-    bool (*usable)(void);
     /// Distance of the bound's centre to each ball (padded), and the two smallest.
     void (*distances)(const dem_ball_columns *balls, const dem_block_bound *bound, float *distance, float smallest[2]);
     /// Nearest of the listed balls for each sample: f and owner. The distances are those of `distances` for the list.
@@ -90,8 +88,6 @@ typedef struct dem_pack_kernels {
 
 /// The best set this machine can run, or the named one (NULL: none such, or not usable here).
 const dem_pack_kernels *dem_pack_kernels_choose(const char *name);
-/// All sets built in, best first.
-const dem_pack_kernels *const *dem_pack_kernels_all(size_t *count);
 
 extern const dem_pack_kernels dem_pack_kernels_plain, dem_pack_kernels_v3, dem_pack_kernels_v4;
 

@@ -1,17 +1,10 @@
 // Compiled once as it is (plain) and once per instruction set with DEM_KERNELS set to v3 or v4.
 #include "sim/kernels.h"
 
+#include "base/level.h"
 #include "sim/contact.h"
 #include "sim/drift.h"
 #include "sim/slab.h"
-
-#ifndef DEM_KERNELS
-#define DEM_KERNELS plain
-#endif
-#define JOIN_(a, b) a##b
-#define JOIN(a, b) JOIN_(a, b)
-#define TEXT_(a) #a
-#define TEXT(a) TEXT_(a)
 
 // what people run; every other mix goes through `any`, which asks for each feature as it goes
 #define LINEAR .linear = true, .friction = true, .slide_damping = true
@@ -100,22 +93,8 @@ static void scan(dem_scan_job *job)
     scan_cells(job);
 }
 
-static bool usable(void)
-{
-#if defined(__AVX512F__)
-    return __builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512dq") &&
-           __builtin_cpu_supports("avx512vl") && __builtin_cpu_supports("avx512bw") &&
-           __builtin_cpu_supports("avx512cd");
-#elif defined(__AVX2__)
-    return __builtin_cpu_supports("avx2") && __builtin_cpu_supports("bmi2") && __builtin_cpu_supports("fma");
-#else
-    return true;
-#endif
-}
-
-const dem_kernels JOIN(dem_kernels_, DEM_KERNELS) = {
-    .name = TEXT(DEM_KERNELS),
-    .usable = usable,
+const dem_kernels DEM_LEVEL_OF(dem_kernels) = {
+    .name = DEM_LEVEL_NAME,
     .instances = instances,
     .instance_count = sizeof instances / sizeof *instances,
     .move = move,

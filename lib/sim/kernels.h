@@ -141,7 +141,6 @@ typedef struct dem_scan_job {
 
 typedef struct dem_kernels {
     const char *name;
-    bool (*usable)(void);
     const dem_contact_instance *instances;
     size_t instance_count;
     void (*move)(const dem_rows *rows, dem_motion_job *job);
@@ -151,8 +150,6 @@ typedef struct dem_kernels {
 
 /// The best set this machine can run, or the named one (NULL: none such, or not usable here).
 const dem_kernels *dem_kernels_choose(const char *name);
-/// All sets built in, best first.
-const dem_kernels *const *dem_kernels_all(size_t *count);
 
 extern const dem_kernels dem_kernels_plain, dem_kernels_v3, dem_kernels_v4;
 

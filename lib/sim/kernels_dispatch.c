@@ -1,27 +1,15 @@
-#include <string.h>
-
 #include "sim/kernels.h"
 
-static const dem_kernels *const sets[] = {
-#ifdef DEM_X86
-    &dem_kernels_v4,
-    &dem_kernels_v3,
-#endif
-    &dem_kernels_plain,
-};
+#include <string.h>
 
-const dem_kernels *const *dem_kernels_all(size_t *count)
-{
-    *count = sizeof sets / sizeof *sets;
-    return sets;
-}
+#include "base/level.h"
+
+static const dem_kernels *const sets[] = DEM_LEVELS_OF(dem_kernels);
 
 const dem_kernels *dem_kernels_choose(const char *name)
 {
-    for (size_t i = 0; i < sizeof sets / sizeof *sets; i++)
-        if ((!name || strcmp(sets[i]->name, name) == 0) && sets[i]->usable())
-            return sets[i];
-    return NULL;
+    int level = dem_level_find(name);
+    return level < 0 ? NULL : sets[level];
 }
 
 const dem_contact_instance *dem_kernels_instance(const dem_kernels *kernels, dem_features features)

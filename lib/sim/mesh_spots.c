@@ -1,27 +1,7 @@
 // Compiled once as it is (plain) and once per instruction set with DEM_KERNELS set to v3 or v4.
 #include "sim/mesh_spots.h"
 
-#ifndef DEM_KERNELS
-#define DEM_KERNELS plain
-#endif
-#define JOIN_(a, b) a##b
-#define JOIN(a, b) JOIN_(a, b)
-#define TEXT_(a) #a
-#define TEXT(a) TEXT_(a)
-
-static bool usable(void)
-{
-#if defined(__AVX512F__) && defined(__AVX512BW__)
-    return __builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512bw") &&
-           __builtin_cpu_supports("avx512cd") && __builtin_cpu_supports("avx512dq") &&
-           __builtin_cpu_supports("avx512vl");
-#elif defined(__AVX2__)
-    return __builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma") && __builtin_cpu_supports("bmi") &&
-           __builtin_cpu_supports("bmi2") && __builtin_cpu_supports("popcnt");
-#else
-    return true;
-#endif
-}
+#include "base/level.h"
 
 static void run(const dem_triangle *triangles, const uint32_t *ids, const dem_vec3 *centres, size_t count,
                 dem_closest *restrict spots)
@@ -37,4 +17,4 @@ static void run(const dem_triangle *triangles, const uint32_t *ids, const dem_ve
 #endif
 }
 
-const dem_mesh_spots JOIN(dem_mesh_spots_, DEM_KERNELS) = {.name = TEXT(DEM_KERNELS), .usable = usable, .run = run};
+const dem_mesh_spots DEM_LEVEL_OF(dem_mesh_spots) = {.run = run};

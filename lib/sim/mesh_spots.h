@@ -6,8 +6,6 @@
 #include "geom/triangle.h"
 
 typedef struct dem_mesh_spots {
-    const char *name;
-    bool (*usable)(void);
     /// spots[k] is the closest point of triangles[ids[k]] to centres[k].
     void (*run)(const dem_triangle *triangles, const uint32_t *ids, const dem_vec3 *centres, size_t count,
                 dem_closest *restrict spots);

@@ -1,19 +1,11 @@
 #include "sim/mesh_spots.h"
 
-#include <string.h>
+#include "base/level.h"
 
-static const dem_mesh_spots *const sets[] = {
-#ifdef DEM_X86
-    &dem_mesh_spots_v4,
-    &dem_mesh_spots_v3,
-#endif
-    &dem_mesh_spots_plain,
-};
+static const dem_mesh_spots *const sets[] = DEM_LEVELS_OF(dem_mesh_spots);
 
 const dem_mesh_spots *dem_mesh_spots_choose(const char *name)
 {
-    for (size_t i = 0; i < sizeof sets / sizeof *sets; i++)
-        if ((!name || strcmp(sets[i]->name, name) == 0) && sets[i]->usable())
-            return sets[i];
-    return NULL;
+    int level = dem_level_find(name);
+    return level < 0 ? NULL : sets[level];
 }
