@@ -2,7 +2,7 @@
 #include "bench_contact.h"
 #include "sim/restitution.h"
 
-static const double EXACT = 1e-13; // a dozen roundings of quantities of one size
+static const double EXACT = 1e-13;  // a dozen roundings of quantities of one size
 
 // overlaps are differences of positions: their rounding by the overlap
 static double rounding(double size, double overlap)
@@ -17,7 +17,7 @@ static void a_linear_spring_pushes_in_proportion(void **state)
     (void)state;
     bench b = bench_spheres(model_new(), 0.01, 0.02, 1e-4);
     for (double d = 1e-9; d < 1e-2; d *= 3) {
-        set_pair(&b, 0.01, 0.02, d, v3(0.3, 1, 2)); // speeds do not matter
+        set_pair(&b, 0.01, 0.02, d, v3(0.3, 1, 2));  // speeds do not matter
         bench_step(&b, 1e-5);
         wrench left = bench_wrench(&b, 0), right = bench_wrench(&b, 1);
         check_close(left.force.x, -1e4 * d, rounding(0.03, d));
@@ -102,10 +102,10 @@ static void a_rate_damps_with_the_mass_of_the_pair(void **state)
         m->laws[0].damping = DEM_DAMPING_RATE;
         m->laws[0].damping_rate = 700;
         m->laws[0].tail = DEM_TAIL_TENSION;
-        m->laws[0].effective_mass = local ? DEM_MASS_LOCAL : DEM_MASS_BODY; // for spheres the same
+        m->laws[0].effective_mass = local ? DEM_MASS_LOCAL : DEM_MASS_BODY;  // for spheres the same
         bench b = bench_spheres(m, 0.01, 0.02, 1e-4);
         for (double v = -2; v <= 2; v += 0.7) {
-            set_pair(&b, 0.01, 0.02, 1e-4, v3(v, 3, 0)); // v > 0: they part
+            set_pair(&b, 0.01, 0.02, 1e-4, v3(v, 3, 0));  // v > 0: they part
             check_near(bench_force(&b, 1, 0).x, 1 - 700 * pair_mass(0.01, 0.02) * v, 1e-11);
         }
         bench_close(&b);
@@ -210,7 +210,7 @@ static void friction_never_exceeds_the_cap_and_keeps_the_capped_spring(void **st
     (void)state;
     bench b = bench_spheres(friction_model(0.3), 0.01, 0.02, 1e-4);
     dem_random r = random_stream(1, 1);
-    double cap = 0.3, kt = 4e3; // 1 N of normal force
+    double cap = 0.3, kt = 4e3;  // 1 N of normal force
     for (int i = 0; i < 1000; i++) {
         dem_vec3 before = bench_spring(&b), v = v3(0, random_normal(&r), random_normal(&r));
         set_pair(&b, 0.01, 0.02, 1e-4, v);
@@ -315,6 +315,21 @@ static void the_spring_follows_the_pair_wherever_it_turns(void **state)
     bench_close(&b);
 }
 
+// the part along the new normal is lost, the length is not
+static void the_spring_keeps_its_length_however_far_the_normal_turns(void **state)
+{
+    (void)state;
+    bench b = bench_spheres(friction_model(100), 0.01, 0.02, 1e-4);
+    set_pair(&b, 0.01, 0.02, 1e-4, v3(0, 2, 1));
+    bench_step(&b, 1e-4);
+    dem_vec3 start = bench_spring(&b), n = v3(cos(0.5), sin(0.5), 0);
+    bench_put(&b, 1, v3_scale(n, 0.0299), v3(0, 0, 0), v3(0, 0, 0));
+    bench_step(&b, 0);
+    dem_vec3 across = v3_along(start, -v3_dot(start, n), n);
+    check_vec(bench_spring(&b), v3_scale(v3_unit(across), v3_norm(start)), 1e-18);
+    bench_close(&b);
+}
+
 // spins about the normal turn the spring by their mean
 static void the_spring_twists_with_the_mean_spin_about_the_normal(void **state)
 {
@@ -364,7 +379,7 @@ static void mindlin_has_the_slope_and_the_limit_of_partial_slip(void **state)
         check_close(f, fmin(8 * shear * a * s, cap), 1e-10);
         if (i == 0)
             check_close(f, partial, 1e-6);
-        check(f >= partial * (1 - 1e-10)); // never slips before the whole contact does
+        check(f >= partial * (1 - 1e-10));  // never slips before the whole contact does
         // the two are farthest apart where ours reaches the cap, at 2/3 of the way: by (1/3)^1.5
         check(f - partial <= cap * (pow(1.0 / 3, 1.5) + 1e-6));
     }
@@ -425,6 +440,7 @@ int main(void)
         cmocka_unit_test(tangential_dashpots_are_capped_with_the_spring),
         cmocka_unit_test(a_rate_without_a_tangential_one_leaves_the_slip_alone),
         cmocka_unit_test(the_spring_follows_the_pair_wherever_it_turns),
+        cmocka_unit_test(the_spring_keeps_its_length_however_far_the_normal_turns),
         cmocka_unit_test(the_spring_twists_with_the_mean_spin_about_the_normal),
         cmocka_unit_test(mindlin_has_the_slope_and_the_limit_of_partial_slip),
         cmocka_unit_test(the_unloading_correction_creates_no_energy),

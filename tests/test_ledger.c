@@ -185,7 +185,7 @@ static void a_scene_without_a_ledger_says_so(void **state)
     dem_world *w = model_world(m, 1);
     check(isnan(measured(w)->energy.error) && !w->features.ledger);
     dem_world_destroy(w);
-    m->laws[0].friction = DEM_FRICTION_NONE; // nothing can be lost
+    m->laws[0].friction = DEM_FRICTION_NONE;  // nothing can be lost
     w = model_world(m, 1);
     check(measured(w)->energy.error == 0);
     dem_world_destroy(w);
@@ -228,10 +228,10 @@ static void a_belt_does_work_on_what_it_takes_along(void **state)
     model_body(m, model_sphere(m, 0.01), v3(0, 0, 0.01 - sink));
     model_plane(m, v3(0, 0, 0), v3(0, 0, 1))->velocity = v3(1, 0, 0);
     dem_world *w = model_world(m, 1);
-    measured(w); // looking twice at the start is the same
+    measured(w);  // looking twice at the start is the same
     check(measured(w)->energy.work == 0 && measured(w)->energy.error == 0);
     for (int i = 0; i < 40; i++) {
-        run_steps(w, i == 0 ? 1 : 500); // 0.2 s: twice as long as it slides
+        run_steps(w, i == 0 ? 1 : 500);  // 0.2 s: twice as long as it slides
         const dem_energy *e = &measured(w)->energy;
         // what the dashpot did in the first step, when the slip was there at once: less than half of the force's work
         double off = e->kinetic + e->rotational + e->potential + e->elastic + e->friction + e->viscous - e->work;
@@ -265,7 +265,7 @@ static void moving_walls_about_many_clumps_keep_the_balance(void **state)
         model_lattice(m, SLOW_BUILD ? 8 : 27, 0.025, 1, 1);
         model_box(m, v3(-0.01, -0.01, -0.01), v3(0.085, 0.085, 0.085));
         if (drum) {
-            m->walls[1].kind = DEM_WALL_CYLINDER; // about x, instead of the far side in x
+            m->walls[1].kind = DEM_WALL_CYLINDER;  // about x, instead of the far side in x
             m->walls[1].point = m->walls[1].through = v3(0, 0.0375, 0.0375);
             m->walls[1].normal = v3(1, 0, 0);
             m->walls[1].radius = 0.06;
@@ -307,15 +307,14 @@ static void a_push_does_force_times_way(void **state)
     for (int i = 0; i < 2000; i++) {
         dem_world_push(w, 0, force, v3(0, 0, 0));
         run_steps(w, 1);
-        if (i % 100 == 0)
-            check(fabs(measured(w)->energy.error) < 1e-12);
+        if (i % 100 == 0)  // the half kick and the weight of the first step meet: h^2 f.g / 4
+            check(fabs(measured(w)->energy.error) < 2e-8);
     }
     const dem_figures *f = measured(w);
     dem_vec3 x = dem_world_bodies(w).position[0];
-    // a push is a kick at the beginning of its step: the first is early and the last, too, by half of its way
-    dem_vec3 late = v3_sub(v3(1, 0, 0), dem_world_bodies(w).velocity[0]);
-    check_close(f->energy.work, v3_dot(force, x) + 0.5e-5 * v3_dot(force, late), 1e-8);
-    check_close(f->energy.kinetic, 0.5 * mass + f->energy.work - 9.81 * mass * x.z, 1e-12);
+    // a push is a kick at the beginning of its step, the first of half a step: the last is early by half of its way
+    check_close(f->energy.work, v3_dot(force, v3_along(x, -0.5e-5, dem_world_bodies(w).velocity[0])), 1e-7);
+    check_close(f->energy.kinetic, 0.5 * mass + f->energy.work - 9.81 * mass * x.z, 2e-8);
     dem_world_destroy(w);
     model_free(m);
 }
@@ -334,7 +333,7 @@ static void a_moment_does_work_on_the_turn(void **state)
     }
     const dem_figures *f = measured(w);
     double rate = 1e-4 / w->templates.items[0].inertia[0], t = dem_world_time(w);
-    check_close(dem_world_bodies(w).spin[0].z, rate * t, 1e-3); // kicks
+    check_close(dem_world_bodies(w).spin[0].z, rate * t, 1e-3);  // kicks
     check_close(f->energy.work, 1e-4 * rate * t * t / 2, 1e-3);
     check(fabs(f->energy.error) < 1e-12);
     dem_world_destroy(w);

@@ -141,7 +141,7 @@ static void the_list_of_contacts_makes_up_all_forces(void **state)
             on_wall[c->wall]++;
         }
     }
-    check(count == measured(w)->contacts + measured(w)->wall_contacts && count > 40);
+    check(count == measured(w)->contacts + measured(w)->wall_contacts && count > 20);
     for (size_t k = 0; k < v.count; k++) {
         check_vec(force[k], v.force[k], 1e-13);
         check_vec(moment[k], v.moment[k], 1e-15);

@@ -69,8 +69,8 @@ static void random_matrices_agree_with_power_iteration(void **state)
 
 // ---- the bound against real runs
 
-static const double SLIGHT = 1e-7; // of the radius: overlaps; what they are loaded by does not count beside k
-static const double SEED = 1e-15, BLOWN = 1e-11; // of a step's motion: at first, and where it grows [m]
+static const double SLIGHT = 1e-7;  // of the radius: overlaps; what they are loaded by does not count beside k
+static const double SEED = 1e-15, BLOWN = 1e-11;  // of a step's motion: at first, and where it grows [m]
 
 static double motion_of_step(const dem_world *w, double step)
 {
@@ -79,7 +79,7 @@ static double motion_of_step(const dem_world *w, double step)
         const double *v = body_pose(&w->bodies, row) + 8;
         double turning = 0.01 * v3_norm(v3(v[3], v[4], v[5])), speed = v3_norm(v3(v[0], v[1], v[2])) + turning;
         if (!(speed * step <= most))
-            most = speed * step; // also where it is none
+            most = speed * step;  // also where it is none
     }
     return most;
 }
@@ -92,7 +92,7 @@ static bool grows(model *m, double step)
     dem_random r = random_stream(3, 2);
     size_t n = w->bodies.count;
     dem_vec3 force[16], moment[16];
-    for (size_t row = 0; row < n; row++) { // at rest, for the dashpots
+    for (size_t row = 0; row < n; row++) {  // at rest, for the dashpots
         memset(w->bodies.momentum + DEM_ROW * row, 0, 6 * sizeof(double));
         memset(body_pose(&w->bodies, row) + 8, 0, 6 * sizeof(double));
     }
@@ -305,7 +305,7 @@ static void heaps_blow_up_beyond_the_bound_never_below(void **state)
     for (int i = 0; i < heaps; i++) {
         model *m = random_heap((uint64_t)i + 1, 3 + (size_t)i % 6, i % 2);
         double bound = bound_of(m), limit = measured_limit(m, bound);
-        check(limit >= bound * (1 - 2e-4)); // of the bisection
+        check(limit >= bound * (1 - 2e-4));  // of the bisection
         sum += limit / bound;
         model_free(m);
     }
@@ -313,19 +313,33 @@ static void heaps_blow_up_beyond_the_bound_never_below(void **state)
     check(sum / heaps < 1.6);
 }
 
-// dashpots see velocities half a step old: the limit falls by sqrt(1 + z^2) - z
+// x = w h where x^2 + 4 z x / (1 + z x / 2) = 4: a normal dashpot is smaller by what its old velocity makes it larger
+static double mended_limit(double z)
+{
+    double low = 0, high = 2;
+    for (int i = 0; i < 60; i++) {
+        double x = (low + high) / 2;
+        if (x * x + 4 * z * x / (1 + z * x / 2) < 4)
+            low = x;
+        else
+            high = x;
+    }
+    return low;
+}
+
+// dashpots see velocities half a step old: the limit falls by sqrt(1 + z^2) - z at most
 static void lagged_dashpots_lower_the_limit_as_predicted(void **state)
 {
     (void)state;
     static const double ratios[] = {0.1, 0.2, 0.3, 0.5, 1};
-    static const double wanted[] = {1.809975, 1.639608, 1.488061, 1.236068, 0.828427}; // PHYSICS 2.1
+    static const double wanted[] = {1.809975, 1.639608, 1.488061, 1.236068, 0.828427};  // PHYSICS 2.1
     double mass = 2500 * 4 * DEM_PI / 3 * 1e-6, rate = sqrt(1e4 / mass);
     for (int i = 0; i < 5; i++)
         for (int friction = 0; friction < 2; friction++) {
             model *m = model_new();
             m->laws[0].damping = DEM_DAMPING_RATE;
             m->laws[0].damping_rate = 2 * ratios[i] * rate;
-            m->laws[0].tail = i % 2 ? DEM_TAIL_CUT : DEM_TAIL_TENSION; // under load alike
+            m->laws[0].tail = i % 2 ? DEM_TAIL_CUT : DEM_TAIL_TENSION;  // under load alike
             if (friction) {
                 // the tangential dashpot sees the mass m, the motion 2/7 of it
                 m->laws[0].friction = DEM_FRICTION_LINEAR;
@@ -336,11 +350,12 @@ static void lagged_dashpots_lower_the_limit_as_predicted(void **state)
             model_body(m, model_sphere(m, 0.01), v3(0, 0, 0));
             add_wall(m, v3(0, 0, 0), v3(0, 0, -1), 0.01);
             double bound = bound_of(m), limit = measured_limit(m, bound);
-            if (friction)
-                check(limit >= bound * (1 - 2e-4)); // the larger of the two dashpots is taken for both
+            check(limit >= bound * (1 - 2e-4));
+            if (friction)  // nothing mends the tangential dashpot, so this is the limit, or that of the normal one
+                check_close(limit, bound, i < 4 ? 1e-3 : 0.5);
             else {
                 check_close(bound, wanted[i] / rate, 1e-6);
-                check_close(limit, bound, 1e-3);
+                check_close(limit, mended_limit(ratios[i]) / rate, 1e-3);
             }
             model_free(m);
         }
@@ -356,7 +371,7 @@ static void nothing_that_touches_sets_no_limit(void **state)
     check(isinf(dem_world_critical_step(w)));
     dem_step_bound bound;
     dem_error error;
-    check_ok(dem_step_stable(w, true, &bound, &error), error); // but what is listed may
+    check_ok(dem_step_stable(w, true, &bound, &error), error);  // but what is listed may
     check_close(bound.step, 2 * sqrt(2500 * 4 * DEM_PI / 3 * 1e-6 / 2 / 1e4), 1e-12);
     dem_world_destroy(w);
     model_free(m);

@@ -6,11 +6,11 @@
 #include "base/memory.h"
 #include "base/sets.h"
 
-void dem_bodies_release(dem_bodies *bodies)
+void dem_mesh_bodies_release(dem_mesh_bodies *bodies)
 {
     free(bodies->of);
     free(bodies->volume);
-    *bodies = (dem_bodies){0};
+    *bodies = (dem_mesh_bodies){0};
 }
 
 typedef struct body_rank {
@@ -42,10 +42,11 @@ static void join_shells(const dem_shells *shells, const dem_mesh *mesh, uint32_t
             sets_join(parent, i, dem_shell_innermost(shells, i));
 }
 
-dem_status dem_bodies_find(dem_bodies *bodies, const dem_shells *shells, const dem_mesh *mesh, dem_error *error)
+dem_status dem_mesh_bodies_find(dem_mesh_bodies *bodies, const dem_shells *shells, const dem_mesh *mesh,
+                                dem_error *error)
 {
     size_t count = shells->count;
-    *bodies = (dem_bodies){.of = dem_alloc(count, sizeof *bodies->of), .volume = dem_alloc(count, sizeof(double))};
+    *bodies = (dem_mesh_bodies){.of = dem_alloc(count, sizeof *bodies->of), .volume = dem_alloc(count, sizeof(double))};
     uint32_t *parent = dem_alloc(count, sizeof *parent), *owner = dem_alloc(mesh->vertex_count, sizeof *owner);
     body_rank *rank = dem_alloc_zero(count, sizeof *rank);
     bool fine = bodies->of && bodies->volume && parent && owner && rank;
@@ -72,12 +73,12 @@ dem_status dem_bodies_find(dem_bodies *bodies, const dem_shells *shells, const d
     free(owner);
     free(rank);
     if (!fine)
-        dem_bodies_release(bodies);
+        dem_mesh_bodies_release(bodies);
     return fine ? DEM_OK : dem_fail_memory(error);
 }
 
 // one mesh per body, in one pass: no vertex is in two bodies
-static bool copy_bodies(const dem_mesh *mesh, const dem_shells *shells, const dem_bodies *bodies, dem_mesh *parts)
+static bool copy_bodies(const dem_mesh *mesh, const dem_shells *shells, const dem_mesh_bodies *bodies, dem_mesh *parts)
 {
     uint32_t *number = dem_alloc(mesh->vertex_count, sizeof *number);
     if (!number)
@@ -116,7 +117,7 @@ dem_status dem_mesh_split(const dem_mesh *mesh, dem_mesh **list, size_t *count, 
     *count = 0;
     dem_surface surface = {0};
     dem_shells shells = {0};
-    dem_bodies bodies = {0};
+    dem_mesh_bodies bodies = {0};
     dem_mesh view = *mesh;
     dem_status status = dem_surface_build(&surface, &view, error);
     if (status == DEM_OK)
@@ -124,7 +125,7 @@ dem_status dem_mesh_split(const dem_mesh *mesh, dem_mesh **list, size_t *count, 
     if (status == DEM_OK)
         status = dem_shells_nest(&shells, mesh, error);
     if (status == DEM_OK)
-        status = dem_bodies_find(&bodies, &shells, mesh, error);
+        status = dem_mesh_bodies_find(&bodies, &shells, mesh, error);
     dem_mesh *parts = status == DEM_OK ? dem_alloc_zero(bodies.count, sizeof *parts) : NULL;
     if (status == DEM_OK && (!parts || !copy_bodies(mesh, &shells, &bodies, parts)))
         status = dem_fail_memory(error);
@@ -138,6 +139,6 @@ dem_status dem_mesh_split(const dem_mesh *mesh, dem_mesh **list, size_t *count, 
     }
     dem_surface_release(&surface);
     dem_shells_release(&shells);
-    dem_bodies_release(&bodies);
+    dem_mesh_bodies_release(&bodies);
     return status;
 }

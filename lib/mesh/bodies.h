@@ -4,14 +4,15 @@
 
 #include "mesh/shells.h"
 
-typedef struct dem_bodies {
+typedef struct dem_mesh_bodies {
     uint32_t *of;       ///< [shells] body of each shell
     double *volume;     ///< [count] descending [m^3]
     size_t count;
-} dem_bodies;
+} dem_mesh_bodies;
 
 /// Shells that share a vertex are one body; a cavity belongs to the shell around it. Nested shells expected.
-dem_status dem_bodies_find(dem_bodies *bodies, const dem_shells *shells, const dem_mesh *mesh, dem_error *error);
-void dem_bodies_release(dem_bodies *bodies);
+dem_status dem_mesh_bodies_find(dem_mesh_bodies *bodies, const dem_shells *shells, const dem_mesh *mesh,
+                                dem_error *error);
+void dem_mesh_bodies_release(dem_mesh_bodies *bodies);
 
 #endif

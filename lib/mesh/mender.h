@@ -13,7 +13,7 @@ typedef struct dem_mender {
     dem_error *error;
     dem_surface surface;
     dem_shells shells;
-    dem_bodies bodies;
+    dem_mesh_bodies bodies;
     dem_box box;
     double size;        ///< diagonal of `box` [m]
     double reference;   ///< signed volume of the oriented surface without what was filled in [m^3]

@@ -260,7 +260,7 @@ dem_status dem_mesh_repair(const dem_ctx *ctx, dem_mesh *mesh, const dem_repair_
         status = finish(&m);
     dem_surface_release(&m.surface);
     dem_shells_release(&m.shells);
-    dem_bodies_release(&m.bodies);
+    dem_mesh_bodies_release(&m.bodies);
     free(m.flipped);
     return status;
 }

@@ -253,8 +253,8 @@ dem_status dem_mender_solidify(dem_mender *m)
 static dem_status find_bodies(dem_mender *m)
 {
     DEM_TRY(dem_shells_nest(&m->shells, m->mesh, m->error));
-    dem_bodies_release(&m->bodies);
-    return dem_bodies_find(&m->bodies, &m->shells, m->mesh, m->error);
+    dem_mesh_bodies_release(&m->bodies);
+    return dem_mesh_bodies_find(&m->bodies, &m->shells, m->mesh, m->error);
 }
 
 static dem_status drop_dust(dem_mender *m)
