@@ -131,7 +131,7 @@ static void an_oscillator_decays_by_its_ratio(void **state)
             last = v;
         }
         double ratio = (1 - alpha) / (1 + alpha);
-        check_near(highest[1] / highest[0], ratio, 1e-6); // 5000 steps in half a cycle
+        check_near(highest[1] / highest[0], ratio, 1e-6);  // 5000 steps in half a cycle
         check_near(highest[2] / highest[1], ratio, 1e-6);
         dem_world_destroy(w);
         model_free(m);
@@ -282,7 +282,7 @@ static double imbalance(const mode *c, double parts)
     model_cloud(m, 6, 0.02, 1);
     model_dumbbell(m, 0.006, 0.008);
     model_lattice(m, 27, 0.024, 1, 4);
-    m->scene.time.step = 0; // the shortest contact that there can be takes so many steps
+    m->scene.time.step = 0;  // the shortest contact that there can be takes so many steps
     m->scene.time.contact_steps = parts;
     if (c->drum) {
         model_plane(m, v3(0, 0, 0), v3(0, 1, 0));

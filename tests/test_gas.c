@@ -48,8 +48,8 @@ static model *model_gas(grains kind, bool periodic, bool hertz, double parts)
 
 typedef struct history {
     size_t count;
-    double energy[SAMPLES_MOST];  // over that at the start, less 1
-    double translation, rotation; // means [J]
+    double energy[SAMPLES_MOST];   // over that at the start, less 1
+    double translation, rotation;  // means [J]
 } history;
 
 static void watch(dem_world *w, double time, history *h)
@@ -69,7 +69,7 @@ static void watch(dem_world *w, double time, history *h)
 }
 
 typedef struct drift {
-    double largest, spread, trend; // the last: what a straight line through the energies gains
+    double largest, spread, trend;  // the last: what a straight line through the energies gains
 } drift;
 
 static drift drift_of(const history *h)
@@ -129,7 +129,7 @@ static double axial_spin(const dem_world *w, size_t body)
 // what a dimer has in the spin about its axis stays there
 static double axial_energy(const dem_world *w)
 {
-    double sum = 0, inertia = w->templates.items[0].inertia[2]; // c, the first axis
+    double sum = 0, inertia = w->templates.items[0].inertia[2];  // c, the first axis
     for (size_t i = 0; i < BODIES; i++)
         sum += axial_spin(w, i) * axial_spin(w, i) * inertia / 2;
     return sum;
@@ -174,7 +174,7 @@ static void dimers_keep_their_axial_spin_and_all_their_momentum(void **state)
     total_momentum(w, &after, &angular);
     check_vec(after, before, 1e-14 * sum);
     for (size_t i = 0; i < BODIES; i++)
-        check_near(axial_spin(w, i), spin[i], 1e-12 * 57); // spins are up to speed / cell
+        check_near(axial_spin(w, i), spin[i], 1e-12 * 57);  // spins are up to speed / cell
     dem_world_destroy(w);
     model_free(m);
 }

@@ -47,14 +47,14 @@ static void a_free_top_is_where_jacobi_has_it_to_the_second_order(void **state)
     (void)state;
     double turned_off[3], spin_off[3];
     for (int i = 0; i < 3; i++) {
-        int per_second = 14 << i; // |w| h = 0.1 first
+        int per_second = 14 << i;  // |w| h = 0.1 first
         dem_world *w = lone_body(ONE_TWO_THREE, 1, 1, NOT_TURNED, TOP_SPIN, 1.0 / per_second);
         run_steps(w, 10 * (uint64_t)per_second);
         turned_off[i] = angle_between(orientation_now(w, 0), TOP_AT_10);
         spin_off[i] = v3_distance(own_spin(w), TOP_SPIN_AT_10);
         dem_world_destroy(w);
     }
-    check(turned_off[0] < 8e-4); // a tenth of the bound for 100 s
+    check(turned_off[0] < 8e-4);  // a tenth of the bound for 100 s
     for (int i = 0; i < 2; i++) {
         // the next order is h^2 = 0.01 of this one
         check_near(turned_off[i] / turned_off[i + 1], 4, 0.04);
@@ -109,7 +109,7 @@ static void a_free_top_keeps_its_angular_momentum_and_bounds_its_energy(void **s
         check_vec(l, l0, 1e-13 * v3_norm(l0));
         most[i >= 70000] = fmax(most[i >= 70000], fabs(energy_of(ONE_TWO_THREE, spin) / e0 - 1));
     }
-    check(most[0] < 8e-5); // 7.5e-5 in the table, at this step
+    check(most[0] < 8e-5);  // 7.5e-5 in the table, at this step
     check_close(most[1], most[0], 1e-3);
     dem_world_destroy(w);
 }
@@ -161,7 +161,7 @@ static double last_flip(dem_vec3 spin, int side, double step, int *flips, double
 static void flips_come_in_time_and_on_their_own_side(void **state)
 {
     (void)state;
-    check_near(time_between_flips(ONE_TWO_THREE, v3(1e-3, 1, 0)), 28.7314244372, 1e-9); // PHYSICS 6.3
+    check_near(time_between_flips(ONE_TWO_THREE, v3(1e-3, 1, 0)), 28.7314244372, 1e-9);  // PHYSICS 6.3
     for (int side = 0; side < 3; side += 2) {
         dem_vec3 spin = side ? v3(0, 1, 1e-3) : v3(1e-3, 1, 0);
         double between = time_between_flips(ONE_TWO_THREE, spin), off[2], least;
@@ -172,7 +172,7 @@ static void flips_come_in_time_and_on_their_own_side(void **state)
             off[i] = t / ((flips - 0.5) * between) - 1;
             check_near(least, 1e-3, 1e-5);
         }
-        check_near(off[0], 0, 2e-4); // of second order: (w h)^2 / 50
+        check_near(off[0], 0, 2e-4);  // of second order: (w h)^2 / 50
         check_near(off[0] / off[1], 4, 0.04);
     }
 }
@@ -181,7 +181,7 @@ static void flips_come_in_time_and_on_their_own_side(void **state)
 
 typedef struct top {
     dem_world *world;
-    double weight; // m g l [N m]
+    double weight;  // m g l [N m]
 } top;
 
 static const double TOP[3] = {0.2, 0.2, 0.3};
@@ -229,8 +229,8 @@ static void a_heavy_top_precesses_steadily(void **state)
     check_near(slow, 0.336604089, 1e-9);
     check_near(fast, 34.3044121, 1e-7);
     for (int i = 0; i < 2; i++)
-        precess(theta, slow, 20, 4200 << i, &azimuth[i], &tilt[i]); // w h = 0.095, 0.048
-    check(tilt[0] < 2e-5 && azimuth[0] * sin(theta) < 8e-5);        // 1.94e-5 and 7.28e-5 in the table
+        precess(theta, slow, 20, 4200 << i, &azimuth[i], &tilt[i]);  // w h = 0.095, 0.048
+    check(tilt[0] < 2e-5 && azimuth[0] * sin(theta) < 8e-5);         // 1.94e-5 and 7.28e-5 in the table
     check_near(tilt[0] / tilt[1], 4, 0.04);
     check_near(azimuth[0] / azimuth[1], 4, 0.04);
     precess(theta, fast, 1, 10000, &azimuth[0], &tilt[0]);
@@ -266,7 +266,7 @@ static void a_sleeping_top_wakes_below_its_limit(void **state)
 
 // Euler's equations and the turning of the body by Runge and Kutta's fourth order
 typedef struct rotor_state {
-    double y[7]; // q, spin in the body
+    double y[7];  // q, spin in the body
 } rotor_state;
 
 static rotor_state rotor_rate(const double i[3], const rotor_state *s)
@@ -343,7 +343,7 @@ static void a_symmetric_body_turns_exactly_at_any_spin(void **state)
         const double *i = inertia[disc], across = i[1];
         dem_vec3 spin = v3_scale(v3(0.8, 0.36, 0.48), 1e5), l = times_inertia(i, spin);
         dem_quat q0 = quat_unit((dem_quat){0.3, -0.5, 0.7, 0.2});
-        dem_world *w = lone_body(i, 1e-3, mass, q0, spin, 1e-5); // a radian in a step
+        dem_world *w = lone_body(i, 1e-3, mass, q0, spin, 1e-5);  // a radian in a step
         run_steps(w, 20000);
         double t = dem_world_time(w), e0 = energy_of(i, spin);
         dem_vec3 own = disc ? v3(0, 0, (1 / i[2] - 1 / across) * l.z * t) : v3((1 / i[0] - 1 / across) * l.x * t, 0, 0);
@@ -379,7 +379,7 @@ static void a_body_that_turns_by_three_radians_in_a_step_stays_finite(void **sta
         run_steps(w, 1);
         most = fmax(most, fabs(energy_of(ONE_TWO_THREE, own_spin(w)) / e0 - 1));
     }
-    check(most < 1e-3); // ten turns of 0.3 a step: 9 times what 0.1 gives, 7.5e-5
+    check(most < 1e-3);  // ten turns of 0.3 a step: 9 times what 0.1 gives, 7.5e-5
     dem_world_destroy(w);
 }
 
@@ -408,7 +408,7 @@ static void collide(const dem_ball *balls, size_t count, const double inertia[3]
         b->spin = v3(5, -11, 20 * i);
     }
     *world = model_world(m, 1);
-    run_steps(*world, steps); // before a grazing hit makes more of the last bits
+    run_steps(*world, steps);  // before a grazing hit makes more of the last bits
     const dem_figures *f = measured(*world);
     check(f->energy.friction > 0 && f->energy.viscous > 0);
     *view = dem_world_bodies(*world);

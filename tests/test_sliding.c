@@ -83,7 +83,7 @@ static void a_sliding_sphere_ends_at_five_sevenths(void **state)
 }
 
 typedef struct run_down {
-    double acceleration, spin_up, slip; // the last: growth of the slip [m/s^2], [rad/s^2], [m/s^2]
+    double acceleration, spin_up, slip;  // the last: growth of the slip [m/s^2], [rad/s^2], [m/s^2]
 } run_down;
 
 // a sphere let go at rest: its rates between one and two units of time
