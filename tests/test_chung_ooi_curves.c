@@ -27,7 +27,7 @@ static rebound twin(const impact *c)
     double vn = impact_speed(c),
            vt = slip_of(c, c->velocity, c->spin) - c->partner_velocity.x - c->partner_radius * c->partner_spin.y;
     double sliding = c->law.tangential_rate == 0 ? 0 : damping;
-    double overlap = 0, before = 0, spring = 0, normal = 0, slid = 0;  // the last two: impulses
+    double overlap = 0, before = 0, spring = 0, normal = 0, slid = 0; // the last two: impulses
     for (;;) {
         overlap += h * (vn - normal / reduced);
         if (overlap <= 0)
@@ -35,7 +35,10 @@ static rebound twin(const impact *c)
         // a tangential impulse changes the slip by 7/2 of what it does to the velocities
         double speed = vn - normal / reduced, slip = vt - 3.5 * slid / reduced, a = sqrt(k.radius * overlap);
         double kn = 2 * k.young * a, kt = 8 * k.shear * a;
-        double force = fmax(0, 2.0 / 3 * kn * overlap + damping * sqrt(kn * reduced) * speed);
+        // near its begin the dashpot acts for a part of the step only; and on the velocity of half a step ago
+        double c_n = damping * sqrt(kn * reduced), since = overlap / (h * fabs(speed));
+        double part = speed > 0 ? fmin(1.5 * since, fmax(1, 2 - since / 2)) : 1;
+        double force = fmax(0, 2.0 / 3 * kn * overlap + c_n / (1 + h * c_n / 4 / reduced) * part * speed);
         if (c->law.rescale && overlap < before)
             spring *= sqrt(overlap / before);
         before = overlap;
@@ -56,23 +59,19 @@ static rebound twin(const impact *c)
 
 static void check_twin(const impact *c)
 {
-    impact fine = *c;
-    fine.steps = 10 * c->steps;  // its dashpots lag by half a step
-    rebound b = collide(c), t = twin(&fine);
-    double speed = v3_norm(c->velocity) + c->radius * v3_norm(c->spin);
-    // the error of the restitution with Hertz, measured: below 0.1 / N
-    double tolerance = (SLOW_BUILD ? 3e-4 : 2e-5) * speed + 0.1 / c->steps * impact_speed(c);
-    check_near(b.velocity.x, t.velocity.x, 3 * tolerance);
+    rebound b = collide(c), t = twin(c);
+    double speed = v3_norm(c->velocity) + c->radius * v3_norm(c->spin), tolerance = 1e-5 * speed;
+    check_near(b.velocity.x, t.velocity.x, tolerance);
     check_near(b.velocity.z, t.velocity.z, tolerance);
-    check_near(c->radius * b.spin.y, c->radius * t.spin.y, 6 * tolerance);
+    check_near(c->radius * b.spin.y, c->radius * t.spin.y, 2 * tolerance);
 }
 
-// One with rows and lists and in space, the other along one line: they differ by the overlap over the radius, which is
-// about 1e-6, and by a step where the contact begins to slide.
+// Both take the same steps, but one with rows and lists and in space, the other along one line: they differ by the
+// overlap over the radius, which is about 1e-6, and by rounding where the contact begins to slide.
 static void sticking_and_slipping_impacts_are_those_of_a_plain_integration(void **state)
 {
     (void)state;
-    for (double angle_deg = 5; angle_deg < 90; angle_deg += 14) {
+    for (double angle_deg = 5; angle_deg < 90; angle_deg += 7) {
         impact some[] = {oblique(angle_deg, STIFF),
                          spinning(stiffer(ALLOY_6, STIFF), angle_deg),
                          spinning(stiffer(NYLON, STIFF), angle_deg),
@@ -83,7 +82,7 @@ static void sticking_and_slipping_impacts_are_those_of_a_plain_integration(void 
                          spinning(stiffer(NYLON, STIFF), angle_deg)};
         some[7].law.tangential_rate = 0;
         for (int i = 0; i < 8; i++) {
-            some[i].steps = STEPS;
+            some[i].steps = 2000;
             check_twin(&some[i]);
         }
     }
@@ -105,11 +104,11 @@ static void check_column_(const reference *r, int column, const double *got, dou
 }
 #define check_column(r, column, got, tolerance) check_column_((r), (column), (got), (tolerance), __LINE__)
 
-// five to six digits are printed, and either side's restitution is off by a few 1e-6; with the modulus asked for
-// overlap / R comes on top, and with fewer steps their error
+// The reference is off by 7e-6 where the sliding impact is known exactly (a dashpot of first order). With the modulus
+// asked for overlap / R comes on top, and with fewer steps their error.
 static double tolerance_of(const impact *c, bool stiff)
 {
-    return (SLOW_BUILD ? 1e-2 : 2e-5) + (stiff ? 0 : 4 * overlap_share(c));
+    return (SLOW_BUILD ? 1e-2 : 1.5e-5) + (stiff ? 0 : 4 * overlap_share(c));
 }
 
 static void test_4_oblique_impacts_follow_the_curve(void **state)

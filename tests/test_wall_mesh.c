@@ -119,7 +119,7 @@ static void the_box_holds_domain_bodies_and_walls(void **state)
                             {.kind = DEM_WALL_MESH, .mesh = shape_box(9, 1, 1)}};
     dem_box box = dem_walls_box(&ENDLESS, bodies, walls, NULL, 3);
     double margin = 0.05 * v3_norm(v3(9, 8, 8));
-    check_vec(box.low, v3(-margin, -4 - margin, -4 - margin), 1e-12);
+    check_vec(box.low, v3(-margin, -4 - margin, -3), 1e-12);
     check_vec(box.high, v3(9 + margin, 4 + margin, 4 + margin), 1e-12);
     dem_domain_def domain = ENDLESS;
     domain.low.z = 0.5;
@@ -130,9 +130,15 @@ static void the_box_holds_domain_bodies_and_walls(void **state)
     dem_mesh floor = made(&walls[0], NULL, dem_walls_box(&ENDLESS, bodies, walls, NULL, 1));
     check(floor.triangle_count == 2);
     dem_mesh_free(&floor);
+    // planes across the axes end one another: a box has closed edges
+    const dem_wall_def corner[] = {{.kind = DEM_WALL_PLANE, .point = {0, 0, -3}, .normal = {0, 0, 1}},
+                                   {.kind = DEM_WALL_PLANE, .point = {1.5, 0, 0}, .normal = {-1, 0, 0}},
+                                   {.kind = DEM_WALL_PLANE, .point = {0, 9, 0}, .normal = {0, -1, 0}}};
+    box = dem_walls_box(&ENDLESS, bodies, corner, NULL, 3);
+    check(box.low.z == -3 && box.high.x == 1.5 && box.high.y == 9 && box.low.x < 0);
     // moved ones count where they are
     const dem_wall_view pose = {.position = {0, 0, -100}, .orientation = {1, 0, 0, 0}};
-    check(dem_walls_box(&ENDLESS, bodies, walls, &pose, 1).low.z < -103);
+    check(dem_walls_box(&ENDLESS, bodies, walls, &pose, 1).low.z == -103);
     dem_mesh_free(&walls[2].mesh);
     // nothing at all is still a box
     box = dem_walls_box(&ENDLESS, box_empty(), walls, NULL, 0);

@@ -78,6 +78,8 @@ static void every_instruction_set_gives_the_same_bits(void **state)
 static void each_kernel_made_for_a_scene_equals_the_general_one(void **state)
 {
     (void)state;
+    if (dem_kernels_choose(NULL)->instance_count == 1)
+        skip();  // built with the general one only
     for (int variant = 0; variant < 8; variant++) {
         model *m = model_new();
         dem_pair_law *law = &m->laws[0];
@@ -104,8 +106,6 @@ static void each_kernel_made_for_a_scene_equals_the_general_one(void **state)
         model_lattice(m, 100, 0.022, 1.5, 1);
         model_box(m, v3(0, 0, 0), v3(0.11, 0.11, 0.11));
         dem_world *w = model_world(m, 1), *general = model_world(m, 1);
-        if (w->kernels->instance_count == 1)
-            skip();  // built with the general one only
         check(!w->instance->any);
         use_kernels(general, w->kernels, true);
         check(general->instance->any);

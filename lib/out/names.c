@@ -9,8 +9,8 @@ enum { LENGTH = 48 };  // of a name, without the number
 
 static bool is_plain(char c)
 {
-    return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '-' || c == '.' ||
-           c == '_';
+    return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '-' || c == '+' ||
+           c == '.' || c == '_';
 }
 
 static bool is_taken(const char *name, const dem_plain_name *before, size_t count)

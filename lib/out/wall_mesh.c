@@ -49,6 +49,19 @@ static dem_box with_wall(dem_box box, const dem_wall_def *wall, const dem_wall_v
     return box;
 }
 
+// bodies are on one side of a plane; where it stands across an axis, nothing beyond it needs to be shown
+static dem_box cut_by_plane(dem_box box, dem_vec3 point, dem_vec3 normal)
+{
+    for (int k = 0; k < 3; k++) {
+        double n = v3_get(normal, k), at = v3_get(point, k), low = v3_get(box.low, k), high = v3_get(box.high, k);
+        if (n > 1 - TOLERANCE && at < high)
+            v3_set(&box.low, k, fmax(low, at));
+        if (n < TOLERANCE - 1 && at > low)
+            v3_set(&box.high, k, fmin(high, at));
+    }
+    return box;
+}
+
 dem_box dem_walls_box(const dem_domain_def *domain, dem_box bodies, const dem_wall_def *walls,
                       const dem_wall_view *poses, size_t count)
 {
@@ -63,6 +76,11 @@ dem_box dem_walls_box(const dem_domain_def *domain, dem_box bodies, const dem_wa
         double low = v3_get(domain->low, k), high = v3_get(domain->high, k);
         v3_set(&box.low, k, isfinite(low) ? low : v3_get(box.low, k) - margin);
         v3_set(&box.high, k, isfinite(high) ? high : v3_get(box.high, k) + margin);
+    }
+    for (size_t i = 0; i < count; i++) {
+        const dem_wall_view *pose = poses ? &poses[i] : NULL;
+        if (walls[i].kind == DEM_WALL_PLANE)
+            box = cut_by_plane(box, placed(pose, walls[i].point), v3_unit(turned(pose, walls[i].normal)));
     }
     return box;
 }

@@ -346,9 +346,10 @@ DEM_INLINE void contact_law(const dem_features f, const dem_rows *rows, const de
     wide overlap = wide_load(batch->at[AT_OVERLAP] + g);
     wide_mask on = wide_less(zero, overlap);
     wide3 n = get3(batch, AT_NORMAL, g), v = get3(batch, AT_VELOCITY, g);
+    // at the start nothing has passed; the step to come is as good
+    wide per_step = wide_all(1 / (job->last_step > 0 ? job->last_step : job->next_step));
     wide vn = dot3(v, n), inverse_mass = zero, mass = zero, reduced = zero, area = zero,
          step = wide_all(job->last_step);
-    step_back back = {step, wide_all(job->last_step > 0 ? 1 / job->last_step : 1e150)};
     if (damped(f)) {
         inverse_mass = wide_load(batch->at[AT_MASS] + g);
         mass = wide_all(1) / inverse_mass;
@@ -358,7 +359,7 @@ DEM_INLINE void contact_law(const dem_features f, const dem_rows *rows, const de
     if (f.young)
         area = wide_load(batch->at[AT_AREA] + g);
     normal_law normal = normal_elastic(f, law, overlap, reduced, area);
-    normal_damp(f, law, &normal, inverse_mass, mass, overlap, vn, back);
+    normal_damp(f, law, &normal, inverse_mass, mass, overlap, vn, step, per_step);
 
     wide weight = f.weighted ? wide_load(c->weight + at) : wide_all(1);
     wide3 force = {zero, zero, zero}, spring = force;
@@ -459,7 +460,8 @@ DEM_INLINE void contact_batches(const dem_features f, const dem_rows *rows, cons
             continue;
         for (size_t block = 0; block < count; block += DEM_BLOCK_LANES) {
             for (size_t g = block; g < block + DEM_BLOCK_LANES; g += DEM_WIDTH)
-                scatter(f, rows, &batch, g, AT_LEAST_A, c->a + from + g, get3(&batch, AT_FORCE, g), get3(&batch, AT_A, g));
+                scatter(f, rows, &batch, g, AT_LEAST_A, c->a + from + g, get3(&batch, AT_FORCE, g),
+                        get3(&batch, AT_A, g));
             if (wall)
                 continue;
             for (size_t g = block; g < block + DEM_BLOCK_LANES; g += DEM_WIDTH) {

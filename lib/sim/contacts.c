@@ -216,7 +216,7 @@ static bool list_pair(const dem_world *w, const dem_segment *s, dem_pair *p, con
     else {
         const dem_template *a = &w->templates.items[w->bodies.shape[p->a]];
         const dem_template *b = &w->templates.items[w->bodies.shape[p->b]];
-        const uint32_t *pairs = w->candidates[fresh->thread].pairs + 2 * fresh->begin;
+        const uint32_t *pairs = fresh->count ? w->candidates[fresh->thread].pairs + 2 * fresh->begin : NULL;
         for (size_t i = 0; i < fresh->count; i++) {
             dem_contact_item item = {.a = p->a,
                                      .b = p->b,

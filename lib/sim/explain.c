@@ -99,6 +99,15 @@ static void put_passes(dem_buffer *out, const dem_world *w)
                      meshes ? "Embree, for triangles near a body" : "none (Embree is not started)");
 }
 
+static void put_stable(dem_buffer *out, double step, const char *contacts)
+{
+    if (!isfinite(step))
+        return;  // there are none
+    dem_buffer_text(out, "  stable below ");
+    dem_buffer_number(out, step, 4);
+    dem_buffer_print(out, " s with %s\n", contacts);
+}
+
 static dem_status put_step(dem_buffer *out, dem_world *w, dem_error *error)
 {
     dem_step_bound touching, listed;
@@ -108,11 +117,9 @@ static dem_status put_step(dem_buffer *out, dem_world *w, dem_error *error)
     dem_buffer_text(out, "time step: ");
     dem_buffer_number(out, w->next_step, 4);
     dem_buffer_print(out, " s, %s\n", w->time_def.step > 0 ? "as given" : "automatic");
-    dem_buffer_text(out, "  stable below ");
-    dem_buffer_number(out, touching.step, 4);
-    dem_buffer_text(out, " s with the contacts that touch, ");
-    dem_buffer_number(out, listed.step, 4);
-    dem_buffer_text(out, " s with all that may touch soon\n  ");
+    put_stable(out, touching.step, "the contacts that touch");
+    put_stable(out, listed.step, "all that may touch soon");
+    dem_buffer_text(out, "  ");
     dem_buffer_number(out, accurate, 4);
     double steps = w->time_def.contact_steps > 0 ? w->time_def.contact_steps : DEM_PI;
     dem_buffer_text(out, " s takes the shortest contact in ");

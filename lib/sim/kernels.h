@@ -61,7 +61,7 @@ typedef struct dem_contact_job {
     dem_contact_columns columns;
     size_t begin, end;      ///< multiples of 8
     double last_step, kick; ///< time since the last step; time the forces act [s]
-    double next_step;       ///< that the strain is for [s] (watch)
+    double next_step;       ///< the one to come [s]
     dem_tally *tally;
     dem_contact_record *records; ///< [end - begin] instead of forces, in the columns' order; NULL: forces
 } dem_contact_job;

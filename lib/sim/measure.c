@@ -54,7 +54,8 @@ static dem_status visit_segments(dem_world *w, dem_contacts *contacts, int form,
             if (!dem_grow(&w->views.records, &w->views.record_capacity, w->views.record_capacity,
                           sizeof *w->views.records))
                 return dem_fail_memory(error);
-        dem_contact_job job = {contacts->columns, s->begin, s->end, w->last_step, 0, 0, &scratch, w->views.records};
+        dem_contact_job job = {contacts->columns, s->begin, s->end,          w->last_step, 0,
+                               w->next_step,      &scratch, w->views.records};
         (form < 0 ? any->pairs : any->walls[form])(w->features, &rows, &job);
         for (size_t k = 0; k < size; k++) {
             size_t at = segment_place(s, k);

@@ -111,7 +111,7 @@ static bool same_candidates(const dem_world *w, const dem_pair *p, const dem_fre
         return false;
     const dem_contacts *contacts = &w->contacts;
     const dem_segment *s = &contacts->segments[p->a / DEM_SEGMENT];
-    const uint32_t *pairs = w->candidates[fresh->thread].pairs + 2 * fresh->begin;
+    const uint32_t *pairs = fresh->count ? w->candidates[fresh->thread].pairs + 2 * fresh->begin : NULL;
     uint32_t first_a = w->templates.items[w->bodies.shape[p->a]].first;
     uint32_t first_b = w->templates.items[w->bodies.shape[p->b]].first;
     for (size_t i = 0; i < fresh->count; i++) {

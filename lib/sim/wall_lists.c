@@ -140,11 +140,8 @@ static void keep_touches(wall_look *look, size_t row, size_t old_begin, size_t b
         }
 }
 
-static bool same_list(const dem_contacts *contacts, const dem_segment *s, const dem_contact_item *items, size_t count,
-                      size_t old_count)
+static bool same_list(const dem_contacts *contacts, const dem_segment *s, const dem_contact_item *items, size_t count)
 {
-    if (count != old_count)
-        return false;
     for (size_t k = 0; k < count; k++) {
         size_t at = segment_place(s, k);
         if (contacts->columns.a[at] != items[k].a || contacts->columns.sphere_a[at] != items[k].sphere_a ||
@@ -169,7 +166,8 @@ static void look_at_form(wall_look *look, size_t segment, dem_wall_form form, co
         if (looked[row - rows]) {
             size_t touches = list.touches.count;
             look_at_body(look, row, &list, &slack[row - rows]);
-            take_springs(contacts, s, from, old, look->items + begin, look->count - begin);
+            if (look->count > begin)
+                take_springs(contacts, s, from, old, look->items + begin, look->count - begin);
             if (form == DEM_FORM_MESH && !look->failed)
                 look->failed |= !dem_mesh_touch_remember(&w->mesh_touches[segment], &list.touches, touches);
         } else {
@@ -182,7 +180,8 @@ static void look_at_form(wall_look *look, size_t segment, dem_wall_form form, co
         }
     }
     list.count = look->count - list.begin;
-    bool same = form != DEM_FORM_MESH && same_list(contacts, s, look->items + list.begin, list.count, old);
+    bool same = form != DEM_FORM_MESH && list.count == old;
+    same = same && (old == 0 || same_list(contacts, s, look->items + list.begin, old));
     if (same)
         look->count = list.begin;
     else if (dem_grow(&look->lists, &look->list_capacity, look->list_count, sizeof list))

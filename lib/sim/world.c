@@ -208,8 +208,9 @@ void dem_world_destroy(dem_world *w)
     }
     dem_team_destroy(w->team);
     dem_views_release(&w->views);
-    void *all[] = {w->clumps, w->shape_names, w->shifts, w->mesh_touches, w->tallies,    w->motion_tallies,
-                   w->asked,  w->part_asked,  w->parts,  w->fresh,        w->candidates, w->pushes};
+    void *all[] = {w->clumps,   w->shape_names,   w->shifts, w->mesh_touches, w->tallies,    w->motion_tallies,
+                   w->asked,    w->part_asked,    w->parts,  w->fresh,        w->candidates, w->pushes,
+                   w->strained, w->part_strained};
     for (size_t i = 0; i < sizeof all / sizeof *all; i++)
         free(all[i]);
     free(w);

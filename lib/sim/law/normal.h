@@ -6,10 +6,10 @@
 #include "sim/features.h"
 
 typedef struct normal_law {
-    wide elastic;    ///< force of the spring [N]
-    wide force;      ///< with the dashpot [N]
-    wide stiffness;  ///< tangent of the spring [N/m]
-    wide radius;     ///< sqrt(R* overlap), of the contact [m] (Hertz only)
+    wide elastic;   ///< force of the spring [N]
+    wide force;     ///< with the dashpot [N]
+    wide stiffness; ///< tangent of the spring [N/m]
+    wide radius;    ///< sqrt(R* overlap), of the contact [m] (Hertz only)
 } normal_law;
 
 /// R* = R_i R_j / (R_i + R_j)
@@ -40,19 +40,15 @@ DEM_INLINE normal_law normal_elastic(const dem_features f, const wide *law, wide
     return n;
 }
 
-/// The time since the last step [s], and one over it (something huge at the start).
-typedef struct step_back {
-    wide time, inverse;
-} step_back;
-
 /// Dashpot on the velocity `vn` of separation half a step ago [m/s], with the inverse of the effective mass [1/kg].
 ///
 /// Of second order, so that few steps give the asked restitution. The old velocity makes an oscillator of m - c h / 2
-/// of one of m, whose damping ratio is larger by 1 + c h / 4 m: c is smaller by that. And a contact that is within a
-/// step of its begin has had the dashpot since then only, not since half a step ago: for 1/2 + overlap / (h |vn|) of a
-/// step; one that pulls to the end likewise before that.
+/// of one of m, whose damping ratio is larger by 1 + c h / 4 m: c is smaller by that. And the first force counts for a
+/// whole step, wherever in the step the contact has begun: with s = overlap / (h |vn|), the steps since then, it is
+/// weighed by 3/2 s up to s = 1 and then by 2 - s / 2 down to 1, which has no jumps and sums up to the time that has
+/// passed. Likewise at the end of a contact that may pull. `per_step`: 1 / h.
 DEM_INLINE void normal_damp(const dem_features f, const wide *law, normal_law *n, wide inverse_mass, wide mass,
-                            wide overlap, wide vn, step_back step)
+                            wide overlap, wide vn, wide step, wide per_step)
 {
     wide c = wide_all(0);
     if (f.rate)
@@ -60,16 +56,13 @@ DEM_INLINE void normal_damp(const dem_features f, const wide *law, normal_law *n
     if (f.restitution)
         c = wide_fma(law[LAW_ZETA], wide_sqrt(n->stiffness * mass), c);
     if (f.rate || f.restitution) {
-        wide half = wide_all(0.5) * vn, gone = overlap * step.inverse;
-        wide v = wide_select(wide_less(gone, wide_all(0) - vn), half - gone, vn);
-        if (!f.cut || f.mixed) {
-            wide_mask pulls = wide_less(gone, vn);
-            if (f.cut)  // by another law
-                pulls = wide_and(pulls, wide_less(law[LAW_FLOOR], wide_all(0)));
-            v = wide_select(pulls, half + gone, v);
-        }
-        c = c / wide_fma(wide_all(0.25) * step.time, c * inverse_mass, wide_all(1));
-        n->force = wide_fnma(c, v, n->force);
+        wide speed = wide_abs(vn), gone = overlap * per_step;
+        wide acts = wide_max(speed, wide_fma(wide_all(-0.5), gone, speed + speed));
+        acts = wide_min(wide_all(1.5) * gone, acts);
+        wide leaves = f.cut ? wide_select(wide_less(law[LAW_FLOOR], wide_all(0)), acts, vn) : acts;
+        acts = wide_select(wide_less(vn, wide_all(0)), wide_all(0) - acts, leaves);
+        c = c / wide_fma(wide_all(0.25) * step, c * inverse_mass, wide_all(1));
+        n->force = wide_fnma(c, acts, n->force);
     }
     if (f.cut)
         n->force = wide_max(n->force, law[LAW_FLOOR]);
