@@ -273,7 +273,7 @@ static void moving_walls_about_many_clumps_keep_the_balance(void **state)
         m->laws[0].restitution = 0.8;
         model_cloud(m, 6, 0.02, 1);
         model_dumbbell(m, 0.006, 0.008);
-        model_lattice(m, SLOW_BUILD ? 8 : 27, 0.025, 1, 1);
+        model_lattice(m, 27, 0.025, 1, 1);
         model_box(m, v3(-0.01, -0.01, -0.01), v3(0.085, 0.085, 0.085));
         if (drum) {
             m->walls[1].kind = DEM_WALL_CYLINDER;  // about x, instead of the far side in x
