@@ -56,8 +56,8 @@ static inline void bench_step(bench *b, double step)
         for (int form = 0; form < DEM_WALL_FORMS; form++)
             if (w->wall_contacts[form].segments) {
                 s = &w->wall_contacts[form].segments[i];
-                job =
-                    (dem_contact_job){w->wall_contacts[form].columns, s->begin, s->end, step, 1, step, &w->tallies[i], NULL};
+                job = (dem_contact_job){
+                    w->wall_contacts[form].columns, s->begin, s->end, step, 1, step, &w->tallies[i], NULL};
                 w->instance->walls[form](w->features, &rows, &job);
             }
     }

@@ -9,8 +9,8 @@
 #include "impacts.h"
 #include "reference.h"
 
-static const double STIFF = 1e10;                     ///< times the modulus: overlaps are 1e-4 of what they were
-static const double STEPS = SLOW_BUILD ? 2000 : 20000; ///< in the elastic contact; the reference has 20000
+static const double STIFF = 1e10;                       ///< times the modulus: overlaps are 1e-4 of what they were
+static const double STEPS = SLOW_BUILD ? 2000 : 20000;  ///< in the elastic contact; the reference has 20000
 
 static const dem_material GLASS = {"glass", 2800, 48e9, 0.2}, LIMESTONE = {"limestone", 2500, 20e9, 0.25};
 static const dem_material STEEL = {"steel", 7850, 208e9, 0.3}, POLYETHYLENE = {"polyethylene", 1400, 1e9, 0.4};
@@ -61,7 +61,7 @@ static inline impact oblique(double angle_deg, double times)
 
 /// As the figures of the paper count them; spins induced by friction are negative there.
 typedef struct oblique_figures {
-    double kept, spin, angle_deg, restitution; ///< v_t'/v_t; [rad/s]; of the contact point
+    double kept, spin, angle_deg, restitution;  ///< v_t'/v_t; [rad/s]; of the contact point
 } oblique_figures;
 
 static inline double slip_of(const impact *c, dem_vec3 velocity, dem_vec3 spin)
@@ -78,7 +78,7 @@ static inline oblique_figures oblique_of(const impact *c, const rebound *b)
 
 // ---- test 5
 
-static const double SLIP_UNIT = 0.3 * 5; ///< mu v_n [m/s]
+static const double SLIP_UNIT = 0.3 * 5;  ///< mu v_n [m/s]
 
 static inline impact tangential(dem_material material, double psi1, double times, bool rescale)
 {
@@ -118,7 +118,7 @@ static inline impact spinning_on_sphere(double angle_deg, double heavier, double
 }
 
 typedef struct spin_figures {
-    double beta, tan_out, vx, vz, spin; ///< as the reference counts them
+    double beta, tan_out, vx, vz, spin;  ///< as the reference counts them
 } spin_figures;
 
 static inline spin_figures spin_figures_of(const impact *c, const rebound *b)

@@ -7,21 +7,21 @@
 
 /// The sphere lies above the plane z = 0, or above the partner, and touches it. Two laws: of spheres, and of the wall.
 typedef struct impact {
-    double radius; ///< [m]
+    double radius;  ///< [m]
     dem_material material;
-    double partner_radius; ///< [m]; 0: a rigid plane
+    double partner_radius;  ///< [m]; 0: a rigid plane
     dem_material partner;
     dem_pair_law law;
-    dem_vec3 velocity, spin; ///< of the sphere
+    dem_vec3 velocity, spin;  ///< of the sphere
     dem_vec3 partner_velocity, partner_spin;
-    double steps; ///< in the elastic contact [-]
+    double steps;  ///< in the elastic contact [-]
 } impact;
 
 typedef struct rebound {
-    dem_vec3 velocity, spin; ///< of the sphere
+    dem_vec3 velocity, spin;  ///< of the sphere
     dem_vec3 partner_velocity, partner_spin;
-    double duration;       ///< [s]
-    double overlap, force; ///< largest [m], [N]
+    double duration;        ///< [s]
+    double overlap, force;  ///< largest [m], [N]
 } rebound;
 
 enum { CURVE = 2048 };

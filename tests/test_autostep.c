@@ -37,7 +37,7 @@ static void no_step_is_above_the_limit_while_a_heap_is_poured(void **state)
         if (clumps)
             model_cloud(m, 30, 0.02, 1);
         model_sphere(m, 0.01);
-        model_lattice(m, SLOW_BUILD ? 27 : 64, 0.024, 0.5, 1);
+        model_lattice(m, 64, 0.024, 0.5, 1);
         model_box(m, v3(0, 0, 0), v3(0.1, 0.1, 0.3));
         dem_world *w = model_world(m, 1);
         double safety = hertz ? 0.5 : 0.8, worst = 0, smallest = INFINITY, largest = 0;

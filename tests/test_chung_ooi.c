@@ -159,7 +159,7 @@ static void test_5_agrees_with_what_kratos_keeps_where_it_slides(void **state)
     check_shared(REFERENCE("kratos_t5_psi"));
     reference psi = reference_read(REFERENCE("kratos_t5_psi"), "steel");
     reference spin = reference_read(REFERENCE("kratos_t5_spin"), "steel");
-    for (int i = 0; i < psi.rows; i++) // what was read off a figure may be off by half a percent of its height
+    for (int i = 0; i < psi.rows; i++)  // what was read off a figure may be off by half a percent of its height
         if (psi.at[i][0] > 5.5)
             check_near(sliding(STEEL, psi.at[i][0], 1).psi2, psi.at[i][1], 0.07);
     for (int i = 0; i < spin.rows; i++)
@@ -198,7 +198,7 @@ static void test_6_agrees_with_what_kratos_keeps_where_it_slides(void **state)
         reference r = reference_read(REFERENCE("kratos_t6_beta"), series[i]);
         for (int k = 0; k < 5; k++) {
             impact c = spinning(materials[i], 85 - 5 * k);
-            check_near(beta_of(&c), r.at[k][1], 0.03); // Kratos' tolerance
+            check_near(beta_of(&c), r.at[k][1], 0.03);  // Kratos' tolerance
         }
     }
 }
@@ -208,7 +208,7 @@ static void test_7_spins_that_do_not_slip_stay_as_they_are(void **state)
     (void)state;
     for (int i = 1; i <= 17; i++) {
         impact c = on_twin(0.1, ALLOY_6, 0.2, 0.4, 0.5);
-        double spin = 2 * tan(i * 5 * DEM_PI / 180); // 0.175 to 22.86 rad/s
+        double spin = 2 * tan(i * 5 * DEM_PI / 180);  // 0.175 to 22.86 rad/s
         c.spin = v3(0, spin, 0);
         c.partner_spin = v3(0, -spin, 0);
         c.steps = 1000;
@@ -241,7 +241,7 @@ static void test_8_agrees_with_what_kratos_keeps_where_it_slides(void **state)
     reference r = reference_read(REFERENCE("kratos_t8_beta"), "caseA");
     for (int k = 0; k < 5; k++) {
         impact c = spinning_on_sphere(85 - 5 * k, 1, 1);
-        check_near(beta_of(&c), r.at[k][1], 0.03); // Kratos' tolerance
+        check_near(beta_of(&c), r.at[k][1], 0.03);  // Kratos' tolerance
     }
 }
 
@@ -263,7 +263,7 @@ static void sliding_throughout_is_exact_with_any_law(void **state)
             c.partner = LIMESTONE;
             c.partner.young *= STIFF;
         }
-        c.velocity.x = 5; // more than 3.5 mu (1 + e) v_n
+        c.velocity.x = 5;  // more than 3.5 mu (1 + e) v_n
         c.spin = v3(0, 20, 3);
         c.steps = 1000;
         rebound b = collide(&c);

@@ -10,7 +10,7 @@ static dem_pair_law kind_of_law(int kind)
     law.materials[0] = (uint32_t)(kind / 2);
     law.materials[1] = (uint32_t)((kind + 1) / 2);
     law.friction_coefficient = 0.3;
-    if (kind == 0) { // elastic, with friction
+    if (kind == 0) {  // elastic, with friction
         law.stiffness = 2e4;
         law.friction = DEM_FRICTION_LINEAR;
     } else if (kind == 1) {
@@ -18,7 +18,7 @@ static dem_pair_law kind_of_law(int kind)
         law.friction = DEM_FRICTION_MINDLIN;
         law.damping = DEM_DAMPING_RESTITUTION;
         law.restitution = 0.5;
-    } else { // pulls, without friction
+    } else {  // pulls, without friction
         law.damping = DEM_DAMPING_RATE;
         law.damping_rate = 800;
         law.tail = DEM_TAIL_TENSION;
@@ -40,7 +40,7 @@ static bench open_kinds(int first, int last)
         model_sphere(m, 0.01);
         m->shapes[i].material = i;
     }
-    if (first == last && first != 1) // the other material must not be there
+    if (first == last && first != 1)  // the other material must not be there
         m->shapes[first ? 0 : 1].material = first ? 1 : 0;
     for (int kind = first; kind <= last; kind++) {
         model_body(m, (uint32_t)(kind / 2), v3(0, kind, 0));
@@ -86,7 +86,7 @@ static void each_contact_has_the_law_of_its_materials(void **state)
             // what the others need adds nothing, not even in the last bit
             check_vec(bench_wrench(&all, 2 * (size_t)kind + 1).force, want, 0);
         }
-        dem_vec3 smooth = bench_wrench(&all, 5).force; // has no friction beside those that have
+        dem_vec3 smooth = bench_wrench(&all, 5).force;  // has no friction beside those that have
         check(smooth.y == 0 && smooth.z == 0);
     }
     for (int kind = 0; kind < KINDS; kind++)
@@ -155,13 +155,13 @@ static void the_elastic_energy_is_the_integral_of_the_force(void **state)
     for (int kind = 0; kind < 5; kind++) {
         model *m = kind == 2 || kind == 4 ? hertz_model() : model_new();
         for (size_t i = 0; i < m->scene.law_count; i++) {
-            m->laws[i].friction_coefficient = 1e6; // nothing slides
+            m->laws[i].friction_coefficient = 1e6;  // nothing slides
             if (kind == 1)
-                m->laws[i].stiffness = 0; // from young
+                m->laws[i].stiffness = 0;  // from young
             if (kind >= 3)
                 m->laws[i].friction = kind == 3 ? DEM_FRICTION_LINEAR : DEM_FRICTION_MINDLIN;
         }
-        if (kind == 4) // beside a linear law
+        if (kind == 4)  // beside a linear law
             m->laws[0] = dem_pair_law_defaults(), m->laws[0].stiffness = 1e5;
         bench b = bench_spheres(m, 0.01, 0.02, 1e-5);
         set_pair(&b, 0.01, 0.02, 0, v3(0, 0, 0));

@@ -215,37 +215,48 @@ static void a_piston_gives_the_sphere_twice_its_speed(void **state)
 }
 
 // a sphere is set on a belt and is taken along until it rolls: half of the work is lost at most
-static void a_belt_does_work_on_what_it_takes_along(void **state)
+static void check_belt(dem_damping_law damping)
 {
-    (void)state;
     model *m = model_new();
     m->scene.gravity = v3(0, 0, -9.81);
     m->laws[0].friction = DEM_FRICTION_LINEAR;
     m->laws[0].friction_coefficient = 0.3;
-    m->laws[0].damping = DEM_DAMPING_RESTITUTION;
+    m->laws[0].damping = damping;
     m->laws[0].restitution = 0.3;
+    m->laws[0].damping_rate = m->laws[0].tangential_rate = 200;
+    if (damping == DEM_DAMPING_RESTITUTION)
+        m->laws[0].tangential_rate = NAN;
     double mass = 2500 * 4 * DEM_PI / 3 * 1e-6, sink = mass * 9.81 / 1e4;
     model_body(m, model_sphere(m, 0.01), v3(0, 0, 0.01 - sink));
     model_plane(m, v3(0, 0, 0), v3(0, 0, 1))->velocity = v3(1, 0, 0);
     dem_world *w = model_world(m, 1);
     measured(w);  // looking twice at the start is the same
     check(measured(w)->energy.work == 0 && measured(w)->energy.error == 0);
+    // the spring that a dashpot's slip puts in at once has cost nobody anything
+    check_close(measured(w)->energy.start, mass * 9.81 * (0.01 - sink) + 1e4 * sink * sink / 2, 1e-12);
     for (int i = 0; i < 40; i++) {
         run_steps(w, i == 0 ? 1 : 500);  // 0.2 s: twice as long as it slides
         const dem_energy *e = &measured(w)->energy;
         // what the dashpot did in the first step, when the slip was there at once: less than half of the force's work
         double off = e->kinetic + e->rotational + e->potential + e->elastic + e->friction + e->viscous - e->work;
         check_near(off, e->start, 0.3 * mass * 9.81 * 1e-5 / 2);
-        check(e->work > 0 && e->friction >= -1e-9);
+        check(e->work > 0);
     }
     const dem_energy *e = &measured(w)->energy;
     // rolls with v = 2/7 of the belt, R w = -5/7: the force mu m g acted for v / (mu g), the belt passed by
     double v = 2.0 / 7, turning = 0.2 * mass * (5.0 / 7) * (5.0 / 7);
     check_near(e->work, mass * v, 2e-3 * mass);
     check_near(e->kinetic + e->rotational, mass / 2 * v * v + turning, 2e-3 * mass);
-    check_near(e->friction, mass / 2 * v, 2e-3 * mass);
+    check_near(e->friction + e->viscous, mass / 2 * v, 2e-3 * mass);
     dem_world_destroy(w);
     model_free(m);
+}
+
+static void a_belt_does_work_on_what_it_takes_along(void **state)
+{
+    (void)state;
+    check_belt(DEM_DAMPING_RESTITUTION);
+    check_belt(DEM_DAMPING_RATE);
 }
 
 // a box of bouncing clumps whose lid comes down while a drum of them turns
@@ -262,7 +273,7 @@ static void moving_walls_about_many_clumps_keep_the_balance(void **state)
         m->laws[0].restitution = 0.8;
         model_cloud(m, 6, 0.02, 1);
         model_dumbbell(m, 0.006, 0.008);
-        model_lattice(m, SLOW_BUILD ? 8 : 27, 0.025, 1, 1);
+        model_lattice(m, 27, 0.025, 1, 1);
         model_box(m, v3(-0.01, -0.01, -0.01), v3(0.085, 0.085, 0.085));
         if (drum) {
             m->walls[1].kind = DEM_WALL_CYLINDER;  // about x, instead of the far side in x

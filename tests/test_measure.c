@@ -17,7 +17,7 @@ static void free_fall_is_exact(void **state)
     check_vec(dem_world_bodies(w).velocity[0], v3(1, 2, 4), 1e-15);
     check_vec(dem_world_bodies(w).spin[0], v3(10, -5, 3), 1e-14);
     for (int i = 1; i <= 10; i++) {
-        run_steps(w, 100); // a step may round by 1e-16 of the speed
+        run_steps(w, 100);  // a step may round by 1e-16 of the speed
         measured(w);
         double t = i * 100 * 1e-4;
         check_near(dem_world_time(w), t, 1e-16);
@@ -109,7 +109,7 @@ static void the_list_of_contacts_makes_up_all_forces(void **state)
     m->scene.gravity = v3(0, 0, -9.81);
     m->laws[0].friction = DEM_FRICTION_LINEAR;
     m->laws[0].friction_coefficient = 0.5;
-    m->scene.damping.local = 0.7; // comes to rest
+    m->scene.damping.local = 0.7;  // comes to rest
     model_cloud(m, 9, 0.02, 1);
     model_dumbbell(m, 0.006, 0.008);
     model_lattice(m, 40, 0.019, 1, 1);
@@ -148,7 +148,7 @@ static void the_list_of_contacts_makes_up_all_forces(void **state)
     }
     for (size_t k = 0; k < walls; k++) {
         check_vec(wall[k].force, reaction[k], 1e-13);
-        check_vec(wall[k].moment, about[k], 1e-14); // `through` is the origin
+        check_vec(wall[k].moment, about[k], 1e-14);  // `through` is the origin
         check(wall[k].contacts == on_wall[k]);
     }
     dem_world_destroy(w);
@@ -161,7 +161,7 @@ static void each_contact_names_its_spheres_and_point(void **state)
     (void)state;
     model *m = model_new();
     uint32_t dumbbell = model_dumbbell(m, 0.01, 0.03), sphere = model_sphere(m, 0.005);
-    model_body(m, sphere, v3(0.015, 0, 0.0148)); // above the right end of the dumbbell
+    model_body(m, sphere, v3(0.015, 0, 0.0148));  // above the right end of the dumbbell
     dem_body_def *b = model_body(m, dumbbell, v3(0, 0, 0));
     b->scale = 1;
     model_plane(m, v3(0, 0, -0.0099), v3(0, 0, 1));
@@ -173,20 +173,20 @@ static void each_contact_names_its_spheres_and_point(void **state)
     assert_int_equal(f->contacts, 1);
     assert_int_equal(f->wall_contacts, 2);
     assert_int_equal(f->spheres, 3);
-    double sign = c[0].body == 0 ? -1 : 1; // out of `body`
+    double sign = c[0].body == 0 ? -1 : 1;  // out of `body`
     uint32_t right = c[0].body == 0 ? c[0].other_sphere : c[0].sphere;
     check(c[0].body + c[0].other == 1 && c[0].wall == UINT32_MAX);
     check(dem_clump_view(m->clumps[dumbbell]).balls[right].centre.x > 0);
     check_vec(c[0].normal, v3(0, 0, sign), 1e-15);
     check_near(c[0].overlap, 2e-4, 1e-16);
-    check_vec(c[0].point, v3(0.015, 0, 0.01 - 1e-4), 1e-16); // in the middle of the overlap
+    check_vec(c[0].point, v3(0.015, 0, 0.01 - 1e-4), 1e-16);  // in the middle of the overlap
     check_close(c[0].normal_force, 2, 1e-12);
     for (int i = 1; i < 3; i++) {
         check(c[i].body == 1 && c[i].other == UINT32_MAX && c[i].wall == 0);
         check_vec(c[i].normal, v3(0, 0, -1), 1e-15);
         check_near(c[i].overlap, 1e-4, 1e-16);
         double x = dem_clump_view(m->clumps[dumbbell]).balls[c[i].sphere].centre.x;
-        check_vec(c[i].point, v3(x, 0, -0.0099), 1e-16); // on the wall
+        check_vec(c[i].point, v3(x, 0, -0.0099), 1e-16);  // on the wall
     }
     // over the smaller radius; the largest of the run stays
     check_close(f->overlap_ratio, 2e-4 / 0.005, 1e-12);
@@ -298,7 +298,7 @@ static void the_highest_point_and_the_centre_of_all(void **state)
         model *m = model_new();
         uint32_t dumbbell = model_dumbbell(m, 0.01, 0.03), sphere = model_sphere(m, 0.02);
         dem_body_def *b = model_body(m, dumbbell, v3(0.1, 0, 0.2));
-        b->orientation = (dem_quat){sqrt(0.5), 0, sqrt(0.5), 0}; // its axis along z
+        b->orientation = (dem_quat){sqrt(0.5), 0, sqrt(0.5), 0};  // its axis along z
         b->scale = 1.5;
         model_body(m, sphere, v3(0, 0.3, 0.21));
         // against gravity; z where there is none
