@@ -27,7 +27,7 @@ static rebound twin(const impact *c)
     double vn = impact_speed(c),
            vt = slip_of(c, c->velocity, c->spin) - c->partner_velocity.x - c->partner_radius * c->partner_spin.y;
     double sliding = c->law.tangential_rate == 0 ? 0 : damping;
-    double overlap = 0, before = 0, spring = 0, normal = 0, slid = 0; // the last two: impulses
+    double overlap = 0, before = 0, spring = 0, normal = 0, slid = 0;  // the last two: impulses
     for (;;) {
         overlap += h * (vn - normal / reduced);
         if (overlap <= 0)

@@ -76,7 +76,7 @@ static void blanking_keeps_length_and_lines(void **state)
 }
 
 typedef struct spot {
-    const char *path; // keys and items, each ended by '.'
+    const char *path;  // keys and items, each ended by '.'
     dem_json_part part;
     long line, column;
 } spot;

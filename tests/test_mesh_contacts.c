@@ -116,7 +116,7 @@ static void a_wedge_is_felt_at_its_edge_only(void **state)
     check_near(c[0].distance, 0.95, 1e-15);
     // rolling over it: always one contact, and the force turns with the place of the ball
     for (int i = -1000; i <= 1000; i++) {
-        double angle = i * 0.0009 + 0.5 * DEM_PI; // 51.6 degrees to both sides; faces from 45 on
+        double angle = i * 0.0009 + 0.5 * DEM_PI;  // 51.6 degrees to both sides; faces from 45 on
         dem_vec3 out = v3(cos(angle), 0, sin(angle));
         assert_int_equal(wall_touch(wall, v3_scale(out, 0.9), 1, c), 1);
         double lean = fmax(fabs(angle - 0.5 * DEM_PI) - 0.25 * DEM_PI, 0);
@@ -224,7 +224,7 @@ static void check_equal_pushes(const dem_mesh_wall *a, const dem_mesh_wall *b, d
         assert_int_equal(na, nb);
         for (int k = 0; k < na; k++)
             check_near(ca[k].distance, cb[k].distance, tolerance);
-        if (na > 0) // rounding of coordinates turns what is near more
+        if (na > 0)  // rounding of coordinates turns what is near more
             check_vec(wall_push(ca, na, radius), wall_push(cb, nb, radius), tolerance * radius / ca[0].distance);
     }
 }
@@ -255,10 +255,10 @@ static void the_folds_of_a_drum_farther_off_are_not_felt(void **state)
     (void)state;
     for (int facets = 24; facets <= 384; facets *= 4) {
         dem_mesh_wall *coarse = wall_of(wall_drum(facets)), *fine = wall_of(wall_refined(wall_drum(facets)));
-        double inner = cos(DEM_PI / facets); // distance of the facets from the axis
+        double inner = cos(DEM_PI / facets);  // distance of the facets from the axis
         for (int i = 0; i < 4000; i++) {
             dem_mesh_contact c[MOST];
-            double angle = i * 2 * DEM_PI / 4000, away = inner - 0.295; // 0.005 into the middle of a facet
+            double angle = i * 2 * DEM_PI / 4000, away = inner - 0.295;  // 0.005 into the middle of a facet
             dem_vec3 centre = v3(away * cos(angle), 0.1, away * sin(angle));
             int count = wall_touch(coarse, centre, 0.3, c);
             check(count <= 2);
@@ -413,7 +413,7 @@ static void many_candidates_come_to_the_same_contacts(void **state)
 static void beyond_the_most_contacts_the_nearest_are_kept(void **state)
 {
     (void)state;
-    dem_mesh sphere = shape_sphere(1), mesh = {0}; // an octahedron: 8 faces about the origin; two of them, turned
+    dem_mesh sphere = shape_sphere(1), mesh = {0};  // an octahedron: 8 faces about the origin; two of them, turned
     for (int k = 0; k < 2; k++) {
         dem_mesh part;
         dem_error error;
@@ -505,9 +505,9 @@ static void the_nearest_contact_within_reach_goes_on_and_only_once(void **state)
     int from[MOST];
     dem_mesh_contacts_follow(last, 4, c, 1, 0.21, from);
     assert_int_equal(from[0], 0);
-    dem_mesh_contacts_follow(last, 4, c, 1, 0.19, from); // too far
+    dem_mesh_contacts_follow(last, 4, c, 1, 0.19, from);  // too far
     assert_int_equal(from[0], -1);
-    c[0].normal = fallen; // 15.5 degrees
+    c[0].normal = fallen;  // 15.5 degrees
     dem_mesh_contacts_follow(last, 4, c, 1, 0.21, from);
     assert_int_equal(from[0], -1);
     dem_mesh_contacts_follow(last, 0, c, 1, 10, from);

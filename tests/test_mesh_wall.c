@@ -40,7 +40,7 @@ static void a_wall_welds_its_corners_and_keeps_the_order_of_its_triangles(void *
         loose.vertices[i] = box.vertices[box.triangles[i]];
         loose.triangles[i] = i;
     }
-    loose.vertices[36] = v3(100, 100, 100); // no triangle uses it
+    loose.vertices[36] = v3(100, 100, 100);  // no triangle uses it
     dem_mesh_wall *wall = wall_of(loose);
     check(wall->mesh.vertex_count == 8 && wall->mesh.triangle_count == 12);
     for (uint32_t i = 0; i < 12; i++) {
@@ -124,7 +124,7 @@ static void check_near_list(const dem_mesh_wall *wall, dem_vec3 p, double reach,
         check(!listed || d <= reach * (1 + 2e-12) + 2e-14 * wall->triangles[i].length);
         at += listed;
     }
-    assert_int_equal(at, list->count); // ascending, and none twice
+    assert_int_equal(at, list->count);  // ascending, and none twice
 }
 
 static void the_near_triangles_are_those_of_brute_force(void **state)

@@ -4,7 +4,7 @@
 typedef struct refusal {
     const char *text;
     long line;
-    const char *message; // the whole of it, or what it holds where it begins with '~'
+    const char *message;  // the whole of it, or what it holds where it begins with '~'
 } refusal;
 
 static void check_refusals(const refusal *cases, size_t count)
@@ -31,7 +31,7 @@ static void check_refusals(const refusal *cases, size_t count)
 #define CHECK_REFUSALS(cases) check_refusals(cases, sizeof(cases) / sizeof *(cases))
 
 #define S "{'schema': 'dem-scene/1',\n"
-#define IN_HEAD(member) "{" SCENE_HEAD ",\n" member "}" // what is added stands in line 7
+#define IN_HEAD(member) "{" SCENE_HEAD ",\n" member "}"  // what is added stands in line 7
 
 static void unknown_keys_are_refused_with_a_suggestion(void **state)
 {

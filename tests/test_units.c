@@ -50,7 +50,7 @@ static void quantities_become_si(void **state)
         double value = NAN;
         dem_error error;
         check_ok(dem_quantity(cases[i].text, cases[i].dimension, &value, &error), error);
-        check_close(value, cases[i].si, 4e-16); // one rounding of the factor, one of the product
+        check_close(value, cases[i].si, 4e-16);  // one rounding of the factor, one of the product
     }
 }
 

@@ -300,7 +300,7 @@ static void momentum_and_angular_momentum_are_kept_to_the_last_bits(void **state
     model_cloud(m, 8, 0.02, 1);
     model_dumbbell(m, 0.006, 0.008);
     model_lattice(m, 64, 0.0205, 1, 1);
-    for (size_t i = 0; i < 64; i++) // towards the middle
+    for (size_t i = 0; i < 64; i++)  // towards the middle
         m->bodies[i].velocity = v3_scale(v3_sub(v3(0.041, 0.041, 0.041), m->bodies[i].position), 30);
     dem_world *w = model_world(m, 1);
     dem_vec3 p0, l0, p1, l1;
@@ -339,7 +339,7 @@ static void a_run_that_blows_up_stops_and_names_body_and_step(void **state)
 {
     (void)state;
     model *m = model_new();
-    m->scene.time.step = 1e-2; // far beyond the limit
+    m->scene.time.step = 1e-2;  // far beyond the limit
     m->scene.gravity = v3(0, 0, -9.81);
     model_sphere(m, 0.01);
     model_lattice(m, 27, 0.0199, 0, 1);

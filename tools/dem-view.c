@@ -15,7 +15,8 @@ typedef struct arguments {
     double azimuth, elevation;
 } arguments;
 
-static const char about[] = "Draws the last state of a run, grains as their surfaces, by rays on the processor: no display, no GPU.";
+static const char about[] =
+    "Draws the last state of a run, grains as their surfaces, by rays on the processor: no display, no GPU.";
 
 static const char epilogue[] = "Examples:\n"
                                "  dem-view out/ -o last.png\n"
@@ -58,18 +59,23 @@ static int draw(const cli_tool *tool, const arguments *a, const char *directory)
 int main(int argc, char **argv)
 {
     dem_picture_options o = dem_picture_defaults();
-    arguments a = {.common = CLI_COMMON_DEFAULTS, .width = o.width, .height = o.height, .azimuth = o.azimuth_deg,
+    arguments a = {.common = CLI_COMMON_DEFAULTS,
+                   .width = o.width,
+                   .height = o.height,
+                   .azimuth = o.azimuth_deg,
                    .elevation = o.elevation_deg};
     const cli_option options[] = {
         {.help = "Picture"},
         {"output", 'o', CLI_TEXT, "FILE", "PNG file to write; - is standard output", &a.output, 0, 0},
-        {"colour", 'c', CLI_CHOICE, colour_names, "what the colours show (default number: each body its own)", &a.colour,
-         0, 0},
-        {"spheres", 0, CLI_FLAG, NULL, "draw the spheres of the clumps, not the surfaces of the grains", &a.spheres, 0, 0},
+        {"colour", 'c', CLI_CHOICE, colour_names, "what the colours show (default number: each body its own)",
+         &a.colour, 0, 0},
+        {"spheres", 0, CLI_FLAG, NULL, "draw the spheres of the clumps, not the surfaces of the grains", &a.spheres, 0,
+         0},
         {"no-walls", 0, CLI_FLAG, NULL, "leave the walls out", &a.no_walls, 0, 0},
         {"width", 0, CLI_WHOLE, "PIXELS", "of the picture (default 1200)", &a.width, 16, 16384},
         {"height", 0, CLI_WHOLE, "PIXELS", "of the picture (default 1600)", &a.height, 16, 16384},
-        {"azimuth", 0, CLI_NUMBER, "DEG", "where it is seen from, about the vertical (default -60)", &a.azimuth, -360, 360},
+        {"azimuth", 0, CLI_NUMBER, "DEG", "where it is seen from, about the vertical (default -60)", &a.azimuth, -360,
+         360},
         {"elevation", 0, CLI_NUMBER, "DEG", "and above the ground (default 18)", &a.elevation, -89, 89},
         CLI_COMMON_OPTIONS(a.common),
     };
@@ -83,7 +89,8 @@ int main(int argc, char **argv)
     int status;
     if (cli_parse(&tool, argc, argv, &operands, &status) == CLI_GO) {
         if (operands.count != 1)
-            status = cli_wrong_usage(&tool, operands.count ? "one run at a time" : "name the output directory of a run");
+            status =
+                cli_wrong_usage(&tool, operands.count ? "one run at a time" : "name the output directory of a run");
         else if (!a.output)
             status = cli_wrong_usage(&tool, "name the file to write, as in -o last.png");
         else

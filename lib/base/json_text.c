@@ -68,8 +68,8 @@ static void blank(char *begin, const char *end)
 void dem_json_blank(char *text, size_t size)
 {
     scanner s = {text, text + size};
-    char *comma = NULL; // the last sign, if it is a comma behind a value
-    char last = '[';    // the last sign that is no space
+    char *comma = NULL;  // the last sign, if it is a comma behind a value
+    char last = '[';     // the last sign that is no space
     if (starts(&s, byte_order_mark))
         blank(text, text + 3);
     while (s.at < s.end) {
@@ -206,7 +206,7 @@ bool dem_json_locate(const char *text, size_t size, const dem_json_place *place,
         if (*p == '\n') {
             ++*line;
             *column = 1;
-        } else if ((*p & 0xc0) != 0x80) // not in the middle of a character of UTF-8
+        } else if ((*p & 0xc0) != 0x80)  // not in the middle of a character of UTF-8
             ++*column;
     return true;
 }

@@ -10,8 +10,8 @@ void dem_json_blank(char *text, size_t size);
 
 /// The way from the outermost value to one inside: each step is a key of an object, or an item of an array.
 typedef struct dem_json_place {
-    const struct dem_json_place *in; ///< of the object or array; NULL: this is the outermost value
-    const char *key;                 ///< NULL: an item
+    const struct dem_json_place *in;  ///< of the object or array; NULL: this is the outermost value
+    const char *key;                  ///< NULL: an item
     size_t index;
 } dem_json_place;
 

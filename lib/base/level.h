@@ -17,9 +17,15 @@
 
 /// The members of a family that are built in, by level.
 #ifdef DEM_X86
-#define DEM_LEVELS_OF(family) {&family##_plain, &family##_v3, &family##_v4}
+#define DEM_LEVELS_OF(family)                                                                                          \
+    {                                                                                                                  \
+        &family##_plain, &family##_v3, &family##_v4                                                                    \
+    }
 #else
-#define DEM_LEVELS_OF(family) {&family##_plain}
+#define DEM_LEVELS_OF(family)                                                                                          \
+    {                                                                                                                  \
+        &family##_plain                                                                                                \
+    }
 #endif
 enum { DEM_LEVELS = 3 };
 

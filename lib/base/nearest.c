@@ -37,7 +37,7 @@ const char *dem_nearest(const char *typed, const char *(*next)(const void *user,
     size_t length = strlen(typed);
     if (length > LONGEST)
         return NULL;
-    size_t nearest = 2 * (length / 3 + 2); // in half edits
+    size_t nearest = 2 * (length / 3 + 2);  // in half edits
     for (size_t i = 0; (name = next(user, i)); i++) {
         // what was typed may also be a name cut short, or one with a tail: farther than one edit, nearer than two
         size_t shorter = strlen(name) < length ? strlen(name) : length, far = 2 * edits(typed, name);

@@ -18,7 +18,7 @@
 
 #define DEM_INLINE static inline __attribute__((always_inline))
 
-enum { DEM_BLOCK_LANES = 8 }; ///< lanes on which orders of summation are defined
+enum { DEM_BLOCK_LANES = 8 };  ///< lanes on which orders of summation are defined
 
 #if defined(__AVX512F__) && defined(__AVX512DQ__) && defined(__AVX512VL__)
 #include <immintrin.h>
@@ -437,7 +437,7 @@ DEM_INLINE wide wide_fnma(wide a, wide b, wide c)
 DEM_INLINE wide wide_max(wide a, wide b)
 {
     return a > b ? a : b;
-} // as the instructions have it: b if unordered
+}  // as the instructions have it: b if unordered
 DEM_INLINE wide wide_min(wide a, wide b)
 {
     return a < b ? a : b;

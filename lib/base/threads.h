@@ -1,7 +1,7 @@
 /// A team of threads that works step after step: made once, waits briefly awake and then asleep.
 ///
-/// OpenMP's threads would do, but between two short steps they spin for milliseconds, which on a machine with other work
-/// to do costs more than they save.
+/// OpenMP's threads would do, but between two short steps they spin for milliseconds, which on a machine with other
+/// work to do costs more than they save.
 #ifndef DEM_BASE_THREADS_H
 #define DEM_BASE_THREADS_H
 

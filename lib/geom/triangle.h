@@ -24,18 +24,18 @@ typedef enum dem_triangle_part {
 
 /// A triangle made ready: two cache lines.
 typedef struct dem_triangle {
-    dem_vec3 a, b, c;  ///< [m]
-    dem_vec3 normal;   ///< unit, along (b - a) x (c - a)
-    double inverse[3]; ///< 1 / squared lengths of ab, bc, ca [1/m^2]
-    double length;     ///< of the longest edge [m]
+    dem_vec3 a, b, c;   ///< [m]
+    dem_vec3 normal;    ///< unit, along (b - a) x (c - a)
+    double inverse[3];  ///< 1 / squared lengths of ab, bc, ca [1/m^2]
+    double length;      ///< of the longest edge [m]
 } dem_triangle;
 
 /// The closest point of a triangle as seen from a point p.
 typedef struct dem_closest {
-    dem_vec3 offset;  ///< from p to it [m]
-    double distance2; ///< of p, squared [m^2]
-    double aside2;    ///< squared distance of the foot of p on the plane; 0 on the face [m^2]
-    int64_t part;     ///< a dem_triangle_part, as wide as the numbers beside it
+    dem_vec3 offset;   ///< from p to it [m]
+    double distance2;  ///< of p, squared [m^2]
+    double aside2;     ///< squared distance of the foot of p on the plane; 0 on the face [m^2]
+    int64_t part;      ///< a dem_triangle_part, as wide as the numbers beside it
 } dem_closest;
 
 /// Triangles of less area / (longest edge)^2 are degenerate: rounding alone would turn their normals.

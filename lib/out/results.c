@@ -68,8 +68,8 @@ typedef struct columns {
 
 static dem_status fill_view(dem_results *r, const dem_body_def *defs, size_t n, dem_error *error)
 {
-    columns c = {dem_alloc(n, sizeof *c.shape),    dem_alloc(n, sizeof *c.scale),    dem_alloc(n, sizeof *c.mass),
-                 dem_alloc(n, sizeof *c.position), dem_alloc(n, sizeof *c.velocity), dem_alloc(n, sizeof *c.spin),
+    columns c = {dem_alloc(n, sizeof *c.shape),      dem_alloc(n, sizeof *c.scale),    dem_alloc(n, sizeof *c.mass),
+                 dem_alloc(n, sizeof *c.position),   dem_alloc(n, sizeof *c.velocity), dem_alloc(n, sizeof *c.spin),
                  dem_alloc(n, sizeof *c.orientation)};
     r->bodies = (dem_body_view){.count = n,
                                 .shape = c.shape,
@@ -129,8 +129,8 @@ void dem_results_release(dem_results *r)
         dem_clump_destroy(r->clumps[i]);
     free(r->clumps);
     dem_scene_release(&r->scene);
-    const void *all[] = {r->bodies.shape, r->bodies.scale, r->bodies.mass, r->bodies.position, r->bodies.velocity,
-                         r->bodies.spin, r->bodies.orientation};
+    const void *all[] = {r->bodies.shape,    r->bodies.scale, r->bodies.mass,       r->bodies.position,
+                         r->bodies.velocity, r->bodies.spin,  r->bodies.orientation};
     for (size_t i = 0; i < sizeof all / sizeof *all; i++)
         free((void *)all[i]);
 }

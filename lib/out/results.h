@@ -6,10 +6,10 @@
 #include "dem/world.h"
 
 typedef struct dem_results {
-    dem_scene scene;         ///< without its bodies
-    dem_body_view bodies;    ///< positions, orientations, sizes and velocities; no forces, no coordination
-    dem_clump **clumps;      ///< of the shapes
-    double time;             ///< of the last state [s]
+    dem_scene scene;       ///< without its bodies
+    dem_body_view bodies;  ///< positions, orientations, sizes and velocities; no forces, no coordination
+    dem_clump **clumps;    ///< of the shapes
+    double time;           ///< of the last state [s]
 } dem_results;
 
 /// Errors: DEM_BAD_INPUT where a file is missing or is none of ours, DEM_NO_MEMORY. To be released either way.

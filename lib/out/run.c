@@ -15,8 +15,8 @@
 #include "sim/diagnose.h"
 #include "sim/state.h"
 
-static const double LOOK_EVERY = 0.1;      // [s] of the wall's clock: progress, signals
-static const double DIAGNOSE_EVERY = 5;    // [s] of the wall's clock, at least: warnings
+static const double LOOK_EVERY = 0.1;        // [s] of the wall's clock: progress, signals
+static const double DIAGNOSE_EVERY = 5;      // [s] of the wall's clock, at least: warnings
 static const double EVENT_TOLERANCE = 1e-6;  // of a step: how much before its time an event counts as due
 
 typedef struct runner {
@@ -27,14 +27,14 @@ typedef struct runner {
     dem_world *w;
     dem_frames *frames;
     dem_series *series;
-    const dem_clump **clumps;   // of the shapes, as the world runs them
+    const dem_clump **clumps;  // of the shapes, as the world runs them
     char sha[65];
-    double end;                 // [s]
-    uint64_t last_step;         // 0: by time
+    double end;                                       // [s]
+    uint64_t last_step;                               // 0: by time
     double next_frame, next_series, next_checkpoint;  // [s]; the last by either clock
-    double started, diagnosed;  // by the wall's clock
+    double started, diagnosed;                        // by the wall's clock
     double output_seconds;
-    uint64_t measured_step;     // of the views; UINT64_MAX: none
+    uint64_t measured_step;  // of the views; UINT64_MAX: none
 } runner;
 
 // ---- what is written
@@ -180,7 +180,8 @@ static dem_status step_ahead(runner *r, uint64_t steps, dem_error *error)
     dem_status status = dem_world_step(r->w, steps, &why);
     if (status == DEM_FAILED)
         return dem_fail(error, status, "%s; %s%s", why.text,
-                        r->result->checkpoint ? "the last checkpoint is " : "there is no checkpoint (output.checkpoint)",
+                        r->result->checkpoint ? "the last checkpoint is "
+                                              : "there is no checkpoint (output.checkpoint)",
                         r->result->checkpoint ? r->result->checkpoint : "");
     if (status != DEM_OK && error)
         *error = why;
@@ -262,9 +263,8 @@ static dem_status open_outputs(runner *r, double resume, dem_error *error)
             return dem_fail_memory(error);
         for (uint32_t i = 0; i < r->scene->shape_count; i++)
             r->clumps[i] = dem_world_clump(r->w, i);
-        dem_frames_def def = {o->directory,          r->scene->shapes, r->clumps,
-                              r->scene->shape_count, r->scene->walls,  r->scene->wall_count,
-                              r->scene->domain,      resume};
+        dem_frames_def def = {o->directory,    r->scene->shapes,     r->clumps,        r->scene->shape_count,
+                              r->scene->walls, r->scene->wall_count, r->scene->domain, resume};
         DEM_TRY(dem_frames_open(&def, &r->frames, error));
     }
     if (o->series > 0)
@@ -282,7 +282,8 @@ static dem_status finish(runner *r, dem_error *error)
     DEM_TRY(measure(r, error));
     DEM_TRY(dem_world_diagnose(r->w, error));
     dem_body_view bodies = dem_world_bodies(r->w);
-    DEM_TRY(dem_final_write(r->ctx, r->scene->output.directory, r->scene->shapes, r->scene->shape_count, &bodies, error));
+    DEM_TRY(
+        dem_final_write(r->ctx, r->scene->output.directory, r->scene->shapes, r->scene->shape_count, &bodies, error));
     r->output_seconds += dem_clock() - begin;
     return DEM_OK;
 }
@@ -324,8 +325,13 @@ dem_status dem_run(const dem_ctx *ctx, const dem_scene *scene, const dem_run_opt
                    dem_error *error)
 {
     double begin = dem_clock(), resume;
-    runner r = {.ctx = ctx, .scene = scene, .options = options, .result = result, .measured_step = UINT64_MAX,
-                .started = begin, .diagnosed = begin};
+    runner r = {.ctx = ctx,
+                .scene = scene,
+                .options = options,
+                .result = result,
+                .measured_step = UINT64_MAX,
+                .started = begin,
+                .diagnosed = begin};
     *result = (dem_run_result){0};
     DEM_TRY(set_end(&r, error));
     DEM_TRY(name_scene(&r, error));

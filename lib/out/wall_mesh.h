@@ -11,7 +11,8 @@
 bool dem_wall_moves(const dem_wall_def *wall);
 
 /// Where walls without an end are cut: at the domain, and where that is infinite at a margin about the bodies and what
-/// is known of the walls' places, or at a plane across that axis, which bounds the bodies. `poses` may be NULL: as at time 0.
+/// is known of the walls' places, or at a plane across that axis, which bounds the bodies. `poses` may be NULL: as at
+/// time 0.
 dem_box dem_walls_box(const dem_domain_def *domain, dem_box bodies, const dem_wall_def *walls,
                       const dem_wall_view *poses, size_t count);
 

@@ -5,7 +5,7 @@
 
 #include "base/status.h"
 
-static const double DUMMY_AT = 1e150; // far from everything, and its square is still finite
+static const double DUMMY_AT = 1e150;  // far from everything, and its square is still finite
 
 static void *column(size_t rows, size_t width)
 {

@@ -15,8 +15,8 @@ enum { MOST_COLUMNS = 64, NAME_BYTES = 256 };
 enum { SHAPE, IGNORED, NUMBERS };
 typedef struct csv_column {
     const char *name;
-    int kind;  // SHAPE, IGNORED, or NUMBERS
-    size_t at; // of the number in the body
+    int kind;   // SHAPE, IGNORED, or NUMBERS
+    size_t at;  // of the number in the body
 } csv_column;
 
 #define NUMBER(name, member)                                                                                           \
@@ -40,14 +40,14 @@ typedef struct named {
 
 typedef struct csv {
     const char *name;
-    const char *at, *end; // of the present line
+    const char *at, *end;  // of the present line
     const char *next, *stop;
     long line;
     const csv_column *order[MOST_COLUMNS];
     size_t width;
-    named *shapes; // by name
+    named *shapes;  // by name
     size_t shape_count;
-    const named *last; // most lines are of the same shape as the one before
+    const named *last;  // most lines are of the same shape as the one before
     dem_error *error;
 } csv;
 

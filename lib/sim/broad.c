@@ -12,13 +12,13 @@
 
 enum { LEVELS = 24, CELLS_LEAST = 4 };
 
-static const double SKIN = 0.2; // of the mean bounding radius; flat from 0.1 to 0.4
+static const double SKIN = 0.2;  // of the mean bounding radius; flat from 0.1 to 0.4
 
 typedef struct level {
-    double cell, radius; // edge of a cell, largest radius [m]
-    uint32_t dims[3];    // powers of two
-    size_t begin, end;   // in the sorted columns
-    uint32_t *start;     // [cells + 2]
+    double cell, radius;  // edge of a cell, largest radius [m]
+    uint32_t dims[3];     // powers of two
+    size_t begin, end;    // in the sorted columns
+    uint32_t *start;      // [cells + 2]
     size_t start_capacity;
 } level;
 
@@ -36,8 +36,8 @@ struct dem_search {
     level levels[LEVELS];
     int level_count;
     dem_box box;
-    double pad;           // of distances in 32 bits [m]
-    float *x, *y, *z, *r; // sorted by level and cell
+    double pad;            // of distances in 32 bits [m]
+    float *x, *y, *z, *r;  // sorted by level and cell
     uint32_t *id, *cell, *found;
     uint8_t *level_of;
     int32_t *moved;
@@ -45,7 +45,7 @@ struct dem_search {
     size_t near_count, near_capacity, sorted_capacity;
     pair_limits *limits;
     size_t limit_capacity;
-    dem_pairs spare; // to be filled while the old ones are still read
+    dem_pairs spare;  // to be filled while the old ones are still read
 };
 typedef struct dem_search search;
 

@@ -12,19 +12,19 @@ enum { BATCH = 64 };
 
 // what the loops hand on, by lane
 enum {
-    AT_NORMAL = 0, // out of a
+    AT_NORMAL = 0,  // out of a
     AT_OVERLAP = 3,
-    AT_A = 4, // contact point from the centre of a, and of b
+    AT_A = 4,  // contact point from the centre of a, and of b
     AT_B = 7,
-    AT_VELOCITY = 10, // of b's surface over a's
-    AT_TURN = 13,     // rate about the normal [rad/s]
-    AT_MASS = 14,     // 1 / m_eff
-    AT_REDUCED = 15,  // R*
-    AT_AREA = 16,     // R_min^2 / (R_i + R_j)
-    AT_FORCE = 17,    // on a
-    AT_WALL = 20,     // velocity of the wall's surface
-    AT_STRAIN = 23,   // of the time step, times the mass
-    AT_LEAST_A = 24,  // 1 / least mass of a, and of b
+    AT_VELOCITY = 10,  // of b's surface over a's
+    AT_TURN = 13,      // rate about the normal [rad/s]
+    AT_MASS = 14,      // 1 / m_eff
+    AT_REDUCED = 15,   // R*
+    AT_AREA = 16,      // R_min^2 / (R_i + R_j)
+    AT_FORCE = 17,     // on a
+    AT_WALL = 20,      // velocity of the wall's surface
+    AT_STRAIN = 23,    // of the time step, times the mass
+    AT_LEAST_A = 24,   // 1 / least mass of a, and of b
     AT_LEAST_B = 25,
     AT_COUNT = 26
 };
@@ -61,7 +61,7 @@ DEM_INLINE wide3 turned_back(const wide q[4], wide3 v)
 
 typedef struct contact_side {
     wide pose[8];
-    wide3 arm; // centre of the sphere from that of the body, axes of space
+    wide3 arm;  // centre of the sphere from that of the body, axes of space
     wide sphere[4];
 } contact_side;
 

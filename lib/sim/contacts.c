@@ -316,7 +316,7 @@ static bool reserve_slots(dem_world *w, const size_t *needed)
         if (most > s->slot_capacity)
             s->slot_capacity = most + most / 4 + 4;
         total += s->slot_capacity;
-        s->dirty = true; // all slots move
+        s->dirty = true;  // all slots move
     }
     free(contacts->slot_body);
     contacts->slot_body = dem_alloc_zero(total, sizeof *contacts->slot_body);

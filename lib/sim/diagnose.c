@@ -13,11 +13,11 @@ typedef enum warning {
     WARN_SEARCH,
 } warning;
 
-static const double PENETRATION = 0.05; // of the smaller radius
-static const double TUNNEL = 0.1;       // of a radius in a step
-static const double ENERGY_OFF = 0.01;  // of the energy turned over
-static const double CONTACT_STEPS = 10; // least number of steps in a contact
-static const double SEARCH_EVERY = 5;   // steps between searches
+static const double PENETRATION = 0.05;  // of the smaller radius
+static const double TUNNEL = 0.1;        // of a radius in a step
+static const double ENERGY_OFF = 0.01;   // of the energy turned over
+static const double CONTACT_STEPS = 10;  // least number of steps in a contact
+static const double SEARCH_EVERY = 5;    // steps between searches
 
 // true: not said yet, or by now twice as bad
 static bool worse(dem_world *w, warning which, double how)

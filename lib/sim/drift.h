@@ -27,7 +27,7 @@ DEM_INLINE wide cosine(wide u)
 
 typedef struct rotor {
     wide q[4];
-    wide3 body; // angular momentum in the body
+    wide3 body;  // angular momentum in the body
 } rotor;
 
 // turns about b by twice the half angle `k` body.y
@@ -188,7 +188,7 @@ DEM_INLINE wide3 damp_locally(wide3 impulse, wide3 velocity, wide alpha, const b
 }
 
 typedef struct damping {
-    wide3 local[2], drag[2]; // impulses of force and moment
+    wide3 local[2], drag[2];  // impulses of force and moment
 } damping;
 
 DEM_INLINE void damp(const dem_motion_job *job, const wide before[8], const wide motion[8], wide3 weight,

@@ -22,7 +22,7 @@
     X(mixed, "more than one law")                                                                                      \
     X(weighted, "several contacts of one pair share its force")                                                        \
     X(ledger, "energy that contacts dissipate is summed")                                                              \
-    X(watch, "contacts tell how near an automatic step is to its limit")                                        \
+    X(watch, "contacts tell how near an automatic step is to its limit")                                               \
     X(moving, "walls that move")
 
 typedef struct dem_features {
@@ -33,20 +33,20 @@ typedef struct dem_features {
 
 /// The numbers of one law, a row of 16.
 typedef enum dem_law_slot {
-    LAW_STIFFNESS,       ///< k_n [N/m]
-    LAW_YOUNG,           ///< pi E: k_n = pi E R_min^2 / (R_i + R_j) [Pa]
-    LAW_HERTZ,           ///< 2 E*: dF/d(overlap) = 2 E* sqrt(R* overlap) [Pa]
-    LAW_RATE,            ///< G_n: c_n = m_eff G_n [1/s]
-    LAW_ZETA,            ///< z: c_n = z sqrt(stiffness m_eff); 2 zeta, with Hertz 2 sqrt(5/6) zeta [-]
-    LAW_FLOOR,           ///< least normal force: 0 where the tail is cut, else -INFINITY [N]
-    LAW_SLIDE_STIFFNESS, ///< k_t [N/m]
-    LAW_SLIDE_RATIO,     ///< k_t / k_n, where k_n does not depend on the overlap [-]
-    LAW_SLIDE_HERTZ,     ///< 8 G*, or k_t / k_n 2 E*: k_t = this sqrt(R* overlap) [Pa]
-    LAW_SLIDE_RATE,      ///< G_t: c_t = m_eff G_t [1/s]
-    LAW_SLIDE_ZETA,      ///< z: c_t = z sqrt(k_t m_eff) [-]
-    LAW_FRICTION,        ///< coefficient [-]
-    LAW_KEEP_LEAST,      ///< bounds of what happens to the spring's length when k_t changes, so that the force stays
-    LAW_KEEP_MOST,       ///< (0 to INFINITY), at most stays (0 to 1), or k_t does not change (1 to 1) [-]
+    LAW_STIFFNESS,        ///< k_n [N/m]
+    LAW_YOUNG,            ///< pi E: k_n = pi E R_min^2 / (R_i + R_j) [Pa]
+    LAW_HERTZ,            ///< 2 E*: dF/d(overlap) = 2 E* sqrt(R* overlap) [Pa]
+    LAW_RATE,             ///< G_n: c_n = m_eff G_n [1/s]
+    LAW_ZETA,             ///< z: c_n = z sqrt(stiffness m_eff); 2 zeta, with Hertz 2 sqrt(5/6) zeta [-]
+    LAW_FLOOR,            ///< least normal force: 0 where the tail is cut, else -INFINITY [N]
+    LAW_SLIDE_STIFFNESS,  ///< k_t [N/m]
+    LAW_SLIDE_RATIO,      ///< k_t / k_n, where k_n does not depend on the overlap [-]
+    LAW_SLIDE_HERTZ,      ///< 8 G*, or k_t / k_n 2 E*: k_t = this sqrt(R* overlap) [Pa]
+    LAW_SLIDE_RATE,       ///< G_t: c_t = m_eff G_t [1/s]
+    LAW_SLIDE_ZETA,       ///< z: c_t = z sqrt(k_t m_eff) [-]
+    LAW_FRICTION,         ///< coefficient [-]
+    LAW_KEEP_LEAST,       ///< bounds of what happens to the spring's length when k_t changes, so that the force stays
+    LAW_KEEP_MOST,        ///< (0 to INFINITY), at most stays (0 to 1), or k_t does not change (1 to 1) [-]
     LAW_SLOTS = 16
 } dem_law_slot;
 

@@ -17,13 +17,13 @@ enum { DEM_BODY_ROW = 16, DEM_ROW = 8, DEM_SPHERE_ROW = 4 };
 
 /// Rows of bodies and of what contacts refer to.
 typedef struct dem_rows {
-    double *bodies;        ///< [16 a body] pose and motion
-    double *momentum;      ///< [8 a body, then 8 a slot] P [kg m/s], L [kg m^2/s]
-    const double *inertia; ///< [8 a body]
-    const double *spheres; ///< [4 a sphere] x y z r of all shapes, run frame [m]
-    const double *shifts;  ///< [4 an image] where images stand off [m]
-    const double *laws;    ///< [16 a law]
-    const double *walls;   ///< [16 a wall] see wall.h
+    double *bodies;         ///< [16 a body] pose and motion
+    double *momentum;       ///< [8 a body, then 8 a slot] P [kg m/s], L [kg m^2/s]
+    const double *inertia;  ///< [8 a body]
+    const double *spheres;  ///< [4 a sphere] x y z r of all shapes, run frame [m]
+    const double *shifts;   ///< [4 an image] where images stand off [m]
+    const double *laws;     ///< [16 a law]
+    const double *walls;    ///< [16 a wall] see wall.h
 } dem_rows;
 
 /// Energy that the contacts of a segment have dissipated, in lanes [J], and the largest overlap ratio.
@@ -34,36 +34,36 @@ typedef struct dem_tally {
 
 /// What one contact does, for measuring.
 typedef struct dem_contact_record {
-    double normal[3], point_a[3], point_b[3]; ///< normal out of a; contact point from the centres [m]
+    double normal[3], point_a[3], point_b[3];  ///< normal out of a; contact point from the centres [m]
     double overlap, normal_force, elastic_normal, elastic_slide, reduced_mass, stiffness, slide_stiffness;
-    double force[3];                    ///< on a [N]
-    double lost_friction, lost_viscous; ///< dissipated since the last step [J] (ledger)
-    double wall_power;                  ///< of a moving wall [W]
+    double force[3];                     ///< on a [N]
+    double lost_friction, lost_viscous;  ///< dissipated since the last step [J] (ledger)
+    double wall_power;                   ///< of a moving wall [W]
     double radius_a, radius_b;
     bool touches;
 } dem_contact_record;
 
 /// Columns of contacts: a multiple of 8, padded with such that never touch. Absent columns are NULL.
 typedef struct dem_contact_columns {
-    uint32_t *a, *b;               ///< rows of the bodies; walls have no b
-    uint32_t *sphere_a, *sphere_b; ///< rows of the spheres; of walls: row of the wall instead of sphere_b
-    uint32_t *target;              ///< row of `momentum` that takes b's share
-    uint32_t *shift;               ///< row of the image of b (periodic)
-    uint32_t *law;                 ///< row of the law (mixed)
-    double *spring[3];             ///< tangential spring [m] (friction)
-    double *dash[3];               ///< force of the tangential dashpot in the last step [N] (ledger, slide_damping)
-    double *loss;                  ///< elastic force that was not passed on in the last step [N] (ledger, damped)
-    double *weight;                ///< share of the force that counts [-] (weighted)
-    double *geometry[7];           ///< of mesh walls: normal, overlap, point from the body's centre
+    uint32_t *a, *b;                ///< rows of the bodies; walls have no b
+    uint32_t *sphere_a, *sphere_b;  ///< rows of the spheres; of walls: row of the wall instead of sphere_b
+    uint32_t *target;               ///< row of `momentum` that takes b's share
+    uint32_t *shift;                ///< row of the image of b (periodic)
+    uint32_t *law;                  ///< row of the law (mixed)
+    double *spring[3];              ///< tangential spring [m] (friction)
+    double *dash[3];                ///< force of the tangential dashpot in the last step [N] (ledger, slide_damping)
+    double *loss;                   ///< elastic force that was not passed on in the last step [N] (ledger, damped)
+    double *weight;                 ///< share of the force that counts [-] (weighted)
+    double *geometry[7];            ///< of mesh walls: normal, overlap, point from the body's centre
 } dem_contact_columns;
 
 typedef struct dem_contact_job {
     dem_contact_columns columns;
-    size_t begin, end;      ///< multiples of 8
-    double last_step, kick; ///< time since the last step; time the forces act [s]
-    double next_step;       ///< the one to come [s]
+    size_t begin, end;       ///< multiples of 8
+    double last_step, kick;  ///< time since the last step; time the forces act [s]
+    double next_step;        ///< the one to come [s]
     dem_tally *tally;
-    dem_contact_record *records; ///< [end - begin] instead of forces, in the columns' order; NULL: forces
+    dem_contact_record *records;  ///< [end - begin] instead of forces, in the columns' order; NULL: forces
 } dem_contact_job;
 
 typedef void (*dem_contact_kernel)(dem_features f, const dem_rows *rows, const dem_contact_job *job);
@@ -86,56 +86,56 @@ typedef struct dem_motion_tally {
 /// A body whose contacts strain the time step more than it was allowed, see timestep.h.
 typedef struct dem_strained {
     uint32_t row;
-    double strain; ///< [-]
+    double strain;  ///< [-]
 } dem_strained;
 
 typedef struct dem_motion_job {
-    size_t begin, end;        ///< bodies, multiples of 8
-    double step, kick;        ///< of the positions; of the forces [s]
-    double gravity[3];        ///< [m/s^2]
-    double *path;             ///< [bodies] length of the path of the fastest surface point [m]
-    const double *limit;      ///< [bodies] of the path, that asks for a look at the body's lists
-    const double *wall_limit; ///< [bodies] of the path plus that of moving walls; NULL: none move
-    double wall_path;         ///< [m]
-    const double *strain_limit; ///< [bodies] of the strain, that asks for a look at the step; NULL: not watched
-    dem_strained *strained;     ///< bodies beyond it
+    size_t begin, end;           ///< bodies, multiples of 8
+    double step, kick;           ///< of the positions; of the forces [s]
+    double gravity[3];           ///< [m/s^2]
+    double *path;                ///< [bodies] length of the path of the fastest surface point [m]
+    const double *limit;         ///< [bodies] of the path, that asks for a look at the body's lists
+    const double *wall_limit;    ///< [bodies] of the path plus that of moving walls; NULL: none move
+    double wall_path;            ///< [m]
+    const double *strain_limit;  ///< [bodies] of the strain, that asks for a look at the step; NULL: not watched
+    dem_strained *strained;      ///< bodies beyond it
     size_t strained_count;
-    const double *before;     ///< [8 a body] momentum before the contacts (local damping)
-    double local, viscous;    ///< damping: Cundall's alpha [-], c [1/s]
+    const double *before;   ///< [8 a body] momentum before the contacts (local damping)
+    double local, viscous;  ///< damping: Cundall's alpha [-], c [1/s]
     bool vector, exclude_gravity;
-    dem_motion_tally *tally; ///< ledger; NULL: none
-    uint32_t *asked;         ///< bodies beyond their limit, or not finite
+    dem_motion_tally *tally;  ///< ledger; NULL: none
+    uint32_t *asked;          ///< bodies beyond their limit, or not finite
     size_t asked_count;
 } dem_motion_job;
 
 /// One body of a pair of near bodies, for culling its spheres.
 typedef struct dem_cull_side {
-    const float *x, *y, *z, *r; ///< columns of its shape, padded to 16 by spheres that are never near
+    const float *x, *y, *z, *r;  ///< columns of its shape, padded to 16 by spheres that are never near
     size_t padded;
-    float axes[9]; ///< run frame -> space, scale included
+    float axes[9];  ///< run frame -> space, scale included
     float scale;
 } dem_cull_side;
 
 /// Sphere pairs nearer than a margin: found by slabs along a normal, then one by one.
 typedef struct dem_cull_job {
     dem_cull_side a, b;
-    float offset[3]; ///< centre of b from that of a [m]
-    float normal[3]; ///< in: a guess of the direction from a to b; out: of the nearest pair
-    float margin;    ///< [m]
-    float error;     ///< of the heights in 32 bits [m]
-    float gap;       ///< out: the bodies are at least so far apart; at most `margin` says only that pairs are listed
-    float *work;     ///< [2 a.padded + 6 b.padded]
-    uint32_t *pairs; ///< out: [2 * capacity] sphere of a, sphere of b, counted within their shapes
-    size_t capacity, count; ///< count > capacity: there was no room, nothing else is valid
+    float offset[3];  ///< centre of b from that of a [m]
+    float normal[3];  ///< in: a guess of the direction from a to b; out: of the nearest pair
+    float margin;     ///< [m]
+    float error;      ///< of the heights in 32 bits [m]
+    float gap;        ///< out: the bodies are at least so far apart; at most `margin` says only that pairs are listed
+    float *work;      ///< [2 a.padded + 6 b.padded]
+    uint32_t *pairs;  ///< out: [2 * capacity] sphere of a, sphere of b, counted within their shapes
+    size_t capacity, count;  ///< count > capacity: there was no room, nothing else is valid
 } dem_cull_job;
 
 /// Bodies of one row of cells, to be compared with one body.
 typedef struct dem_scan_job {
-    const float *x, *y, *z, *r; ///< columns of bodies sorted by cell [m]
+    const float *x, *y, *z, *r;  ///< columns of bodies sorted by cell [m]
     const uint32_t *id;
     size_t begin, end;
-    float centre[3], reach; ///< candidates' spheres of r nearer than `reach`
-    uint32_t *found;        ///< out; room for end - begin more plus 16
+    float centre[3], reach;  ///< candidates' spheres of r nearer than `reach`
+    uint32_t *found;         ///< out; room for end - begin more plus 16
     size_t count;
 } dem_scan_job;
 

@@ -9,12 +9,12 @@
 #define DEM_NO_LAW UINT32_MAX
 
 typedef struct dem_laws {
-    double *rows;    ///< [LAW_SLOTS a law], on 64-byte boundaries
-    size_t count;    ///< different rows; equal ones are one
-    uint32_t *table; ///< [materials * materials] row, or DEM_NO_LAW
+    double *rows;     ///< [LAW_SLOTS a law], on 64-byte boundaries
+    size_t count;     ///< different rows; equal ones are one
+    uint32_t *table;  ///< [materials * materials] row, or DEM_NO_LAW
     size_t material_count;
-    dem_features needs; ///< of all laws together
-    bool damped;        ///< some have dashpots
+    dem_features needs;  ///< of all laws together
+    bool damped;         ///< some have dashpots
 } dem_laws;
 
 /// Takes the laws between materials that can meet. Errors: DEM_BAD_INPUT where a number is missing.

@@ -83,7 +83,7 @@ dem_status dem_visit_contacts(dem_world *w, dem_contact_visit visit, void *user,
 // ---- what is visited
 
 typedef struct tour {
-    uint32_t last_a, last_other; // the pair whose contacts are passing
+    uint32_t last_a, last_other;  // the pair whose contacts are passing
     bool counted;
     bool failed;
 } tour;
@@ -148,7 +148,7 @@ static void visit_contact(void *user, dem_world *w, int form, const dem_contact_
         radius = fmin(radius, w->templates.spheres[item->sphere_b][3] * body_scale(&w->bodies, item->b));
         add_to_body(v, b, v3_scale(force, -1), from_array(r->point_b));
     }
-    count_coordination(t, v, a, wall ? ~item->sphere_b : b, b); // walls must not look like bodies
+    count_coordination(t, v, a, wall ? ~item->sphere_b : b, b);  // walls must not look like bodies
     f->overlap_ratio = fmax(f->overlap_ratio, r->overlap / radius);
     v->elastic += r->elastic_normal + r->elastic_slide;
     if (!dem_grow(&v->contacts, &v->contact_capacity, v->contact_count, sizeof *v->contacts)) {

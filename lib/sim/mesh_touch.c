@@ -5,7 +5,7 @@
 
 #include "sim/contacts.h"
 
-static const double LOOK_AROUND = 0.5; // of the bounding radius: how far triangles are asked for, at least
+static const double LOOK_AROUND = 0.5;  // of the bounding radius: how far triangles are asked for, at least
 
 void dem_mesh_touches_release(dem_mesh_touches *t)
 {

@@ -11,10 +11,10 @@
 
 /// One ball near one mesh wall.
 typedef struct dem_mesh_touch {
-    uint32_t a, sphere, wall;  ///< rows
-    uint32_t slot, slot_count; ///< its places in the segment's list of mesh contacts
-    uint32_t first, count;     ///< its candidates in `triangles`
-    uint32_t last_count;       ///< contacts of the last step, in `last` from `slot`
+    uint32_t a, sphere, wall;   ///< rows
+    uint32_t slot, slot_count;  ///< its places in the segment's list of mesh contacts
+    uint32_t first, count;      ///< its candidates in `triangles`
+    uint32_t last_count;        ///< contacts of the last step, in `last` from `slot`
 } dem_mesh_touch;
 
 /// Those of a segment, in the order of its list.
@@ -23,7 +23,7 @@ typedef struct dem_mesh_touches {
     size_t count, capacity;
     uint32_t *triangles;
     size_t triangle_count, triangle_capacity;
-    dem_mesh_contact *last; ///< [slots], in the frame of the wall
+    dem_mesh_contact *last;  ///< [slots], in the frame of the wall
     size_t last_capacity;
 } dem_mesh_touches;
 

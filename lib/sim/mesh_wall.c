@@ -8,7 +8,7 @@
 // ---- the wall
 
 // coordinates whose squares and cubes are still numbers
-static const double LARGEST = 1e100; // [m]
+static const double LARGEST = 1e100;  // [m]
 
 static dem_status check_mesh(const dem_mesh *mesh, const char *name, dem_error *error)
 {
@@ -167,7 +167,7 @@ typedef struct candidate {
     dem_closest spot;
 } candidate;
 
-enum { KEPT = 128 }; // candidates within a ball that are kept; where there are more they are computed each time
+enum { KEPT = 128 };  // candidates within a ball that are kept; where there are more they are computed each time
 
 // a ball and the triangles it may touch
 typedef struct search {
@@ -175,9 +175,9 @@ typedef struct search {
     dem_vec3 centre;
     double radius;
     const uint32_t *ids;
-    const dem_closest *spots; // of the ids; NULL: not known
+    const dem_closest *spots;  // of the ids; NULL: not known
     size_t count;
-    const candidate *kept; // the candidates themselves, in place of all these; NULL: too many
+    const candidate *kept;  // the candidates themselves, in place of all these; NULL: too many
 } search;
 
 static void make_candidate(const search *s, size_t k, candidate *c)
@@ -333,7 +333,7 @@ int dem_mesh_wall_contacts(const dem_mesh_wall *wall, const uint32_t *ids, size_
 void dem_mesh_contacts_follow(const dem_mesh_contact *last, int last_count, const dem_mesh_contact *contacts, int count,
                               double reach, int *from)
 {
-    const double aligned = 0.96592582628906829; // cos 15 degrees
+    const double aligned = 0.96592582628906829;  // cos 15 degrees
     bool used[DEM_MESH_CONTACTS] = {false};
     DEM_ASSERT(last_count <= DEM_MESH_CONTACTS && count <= DEM_MESH_CONTACTS);
     for (int k = 0; k < count; k++)

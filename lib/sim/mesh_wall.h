@@ -24,9 +24,9 @@
 #include "sim/mesh_spots.h"
 
 typedef struct dem_mesh_wall {
-    const dem_triangle *triangles; ///< [mesh.triangle_count], the numbers that everything below speaks of
-    dem_box box;                   ///< of the triangles [m]
-    dem_mesh mesh;                 ///< what was given, equal vertices welded, without degenerate triangles
+    const dem_triangle *triangles;  ///< [mesh.triangle_count], the numbers that everything below speaks of
+    dem_box box;                    ///< of the triangles [m]
+    dem_mesh mesh;                  ///< what was given, equal vertices welded, without degenerate triangles
     dem_ray_scene *rays;
     const dem_mesh_spots *spots;
     dem_arena memory;
@@ -51,13 +51,13 @@ void dem_mesh_wall_spots(const dem_mesh_wall *wall, const uint32_t *ids, const d
 typedef struct dem_mesh_contact {
     uint32_t triangle;
     dem_triangle_part part;
-    dem_vec3 point;  ///< closest point [m]
-    dem_vec3 offset; ///< from the centre to it [m]
-    dem_vec3 normal; ///< unit, from it towards the centre; with the centre on the triangle: the triangle's normal
-    double distance; ///< of the centre, less than the radius [m]
+    dem_vec3 point;   ///< closest point [m]
+    dem_vec3 offset;  ///< from the centre to it [m]
+    dem_vec3 normal;  ///< unit, from it towards the centre; with the centre on the triangle: the triangle's normal
+    double distance;  ///< of the centre, less than the radius [m]
 } dem_mesh_contact;
 
-enum { DEM_MESH_CONTACTS = 8 }; ///< a ball has no more at one wall; farther ones are left out
+enum { DEM_MESH_CONTACTS = 8 };  ///< a ball has no more at one wall; farther ones are left out
 
 /// The contacts of a ball, nearest first, at most `most` (up to DEM_MESH_CONTACTS). Returns how many. `ids` must hold
 /// every triangle within the radius; others, their order and repetitions do not matter.

@@ -99,7 +99,8 @@ static double largest_radius(const placing *p, const dem_fill_def *fill)
         if (size->law == DEM_SIZE_TABLE && size->table_count)
             most = size->sizes[size->table_count - 1];
         else if (size->law != DEM_SIZE_AS_IS)
-            most = isfinite(size->largest) ? size->largest : 10 * larger(size->a, size->law == DEM_SIZE_LOGNORMAL ? 0 : size->b);
+            most = isfinite(size->largest) ? size->largest
+                                           : 10 * larger(size->a, size->law == DEM_SIZE_LOGNORMAL ? 0 : size->b);
         largest = larger(largest, s->radius_out * most / s->equivalent_diameter);
     }
     return largest;

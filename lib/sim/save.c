@@ -51,14 +51,17 @@ static uint64_t hash_constants(const dem_world *w)
     h = hash_bytes(h, w->laws.table, w->laws.material_count * w->laws.material_count * sizeof *w->laws.table);
     for (size_t i = 0; i < w->walls.count; i++) {
         const dem_wall *wall = &w->walls.items[i];
-        dem_vec3 numbers[6] = {wall->point, wall->normal, wall->velocity, wall->through, wall->spin,
-                               {wall->radius, wall->form, wall->material}};
+        dem_vec3 numbers[6] = {wall->point,   wall->normal, wall->velocity,
+                               wall->through, wall->spin,   {wall->radius, wall->form, wall->material}};
         h = hash_bytes(h, numbers, sizeof numbers);
         if (wall->mesh)
             h = hash_bytes(h, wall->mesh->mesh.vertices, wall->mesh->mesh.vertex_count * sizeof(dem_vec3));
     }
-    dem_vec3 loads[4] = {w->gravity, w->domain.low, w->domain.high,
-                         {w->damping.local, w->damping.viscous, w->damping.local_frame + 2 * w->damping.exclude_gravity}};
+    dem_vec3 loads[4] = {
+        w->gravity,
+        w->domain.low,
+        w->domain.high,
+        {w->damping.local, w->damping.viscous, w->damping.local_frame + 2 * w->damping.exclude_gravity}};
     h = hash_bytes(h, loads, sizeof loads);
     double numbers[5] = {w->time_def.step, w->multiple, w->domain.periodic[0], w->domain.periodic[1],
                          w->domain.periodic[2]};
@@ -114,8 +117,8 @@ static void take_head(dem_world *w, const block_head *h)
 // ---- one walk over the state writes and reads it
 
 typedef struct cursor {
-    dem_buffer *out; // writing
-    const char *in;  // reading
+    dem_buffer *out;  // writing
+    const char *in;   // reading
     size_t left;
     bool failed;
 } cursor;
@@ -251,7 +254,7 @@ static void pass_state(cursor *c, dem_world *w)
 
 dem_status dem_world_save(const dem_world *world, void **bytes, size_t *size, dem_error *error)
 {
-    dem_world *w = (dem_world *)world; // the walk only reads when it writes
+    dem_world *w = (dem_world *)world;  // the walk only reads when it writes
     dem_buffer out = {0};
     cursor c = {.out = &out};
     block_head head = head_of(w);
@@ -301,8 +304,8 @@ dem_status dem_world_restore(dem_world *w, const void *bytes, size_t size, dem_e
     memcpy(&head, bytes, sizeof head);
     if (head.layout != LAYOUT)
         return refuse(error, "is of another version; run it with the program that wrote it");
-    bool same = head.constants == own.constants && head.bodies == own.bodies && head.shapes == own.shapes && head.walls == own.walls &&
-                head.laws == own.laws && head.segments == own.segments &&
+    bool same = head.constants == own.constants && head.bodies == own.bodies && head.shapes == own.shapes &&
+                head.walls == own.walls && head.laws == own.laws && head.segments == own.segments &&
                 memcmp(&head.features, &own.features, sizeof own.features) == 0;
     if (!same)
         return refuse(error, "belongs to another scene; resume with the scene it was made from");

@@ -9,7 +9,7 @@
 #include "math/vec.h"
 #include "sim/scene_reader.h"
 
-static const double SAFETY = 0.8, SAFETY_HERTZ = 0.5; // a Hertz contact stiffens between two looks at it
+static const double SAFETY = 0.8, SAFETY_HERTZ = 0.5;  // a Hertz contact stiffens between two looks at it
 
 // ---- defaults
 

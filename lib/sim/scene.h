@@ -25,21 +25,21 @@ typedef enum dem_scene_entry_kind { DEM_ENTRY_BODY, DEM_ENTRY_FILE, DEM_ENTRY_FI
 /// One entry of "bodies" as it was given.
 typedef struct dem_scene_entry {
     dem_scene_entry_kind kind;
-    const char *file;    ///< resolved path
-    size_t first, count; ///< of the scene's bodies, or of its fills
+    const char *file;     ///< resolved path
+    size_t first, count;  ///< of the scene's bodies, or of its fills
 } dem_scene_entry;
 
 /// What a wall's definition does not tell of how it was given.
 typedef struct dem_wall_source {
-    const char *unit; ///< of the mesh file; NULL: not a mesh
-    dem_vec3 axis;    ///< unit; spin = rate axis
-    double rate;      ///< [rad/s]
+    const char *unit;  ///< of the mesh file; NULL: not a mesh
+    dem_vec3 axis;     ///< unit; spin = rate axis
+    double rate;       ///< [rad/s]
 } dem_wall_source;
 
 /// Holds everything a scene that was read points to.
 struct dem_scene_owner {
     dem_arena arena;
-    dem_json *root; ///< names and texts are this tree's
+    dem_json *root;  ///< names and texts are this tree's
     dem_clump **clumps;
     size_t clump_count, clump_capacity;
     dem_body_def *bodies;
@@ -48,9 +48,9 @@ struct dem_scene_owner {
     size_t fill_count, fill_capacity;
     dem_scene_entry *entries;
     size_t entry_count, entry_capacity;
-    dem_wall_def *walls; ///< with their meshes
+    dem_wall_def *walls;  ///< with their meshes
     size_t wall_count, wall_capacity;
-    dem_wall_source *wall_sources; ///< of each wall
+    dem_wall_source *wall_sources;  ///< of each wall
     size_t source_capacity;
 };
 

@@ -8,7 +8,7 @@
 typedef struct step {
     const char *text;
     size_t length;
-    bool bracket; // [0]
+    bool bracket;  // [0]
     bool last;
 } step;
 

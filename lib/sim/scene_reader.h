@@ -8,14 +8,14 @@
 
 /// A "path.to.key=value" that was laid over the file.
 typedef struct dem_scene_override {
-    const char *path;            ///< as it was written
-    const dem_json_place *place; ///< in the arena
+    const char *path;             ///< as it was written
+    const dem_json_place *place;  ///< in the arena
 } dem_scene_override;
 
 typedef struct dem_scene_reader {
     const dem_ctx *ctx;
-    const char *name;   ///< of the file, for messages
-    const char *folder; ///< that paths are relative to; NULL: no files
+    const char *name;    ///< of the file, for messages
+    const char *folder;  ///< that paths are relative to; NULL: no files
     const char *text;
     size_t size;
     dem_scene_override *overrides;
@@ -26,7 +26,7 @@ typedef struct dem_scene_reader {
 } dem_scene_reader;
 
 typedef struct dem_scene_value {
-    dem_json_place place; ///< `in` points to the value around this one, which must live as long
+    dem_json_place place;  ///< `in` points to the value around this one, which must live as long
     const dem_json *json;
 } dem_scene_value;
 
@@ -46,7 +46,7 @@ dem_status dem_scene_unknown(const dem_scene_reader *r, const dem_scene_value *v
 /// Allowed numbers; all zero: any.
 typedef struct dem_range {
     double low, high;
-    bool above, below; ///< low or high itself is not allowed
+    bool above, below;  ///< low or high itself is not allowed
 } dem_range;
 #define DEM_RANGE_POSITIVE                                                                                             \
     {                                                                                                                  \
@@ -60,7 +60,7 @@ typedef struct dem_range {
 /// One name of a choice; a list ends with a NULL.
 typedef struct dem_choice {
     const char *name;
-    int value; ///< DEM_NOT_BUILT: known, refused
+    int value;  ///< DEM_NOT_BUILT: known, refused
 } dem_choice;
 enum { DEM_NOT_BUILT = -1 };
 
@@ -87,7 +87,7 @@ typedef struct dem_field {
     dem_dimension dimension;
     dem_range range;
     const dem_choice *choices;
-    const dem_fields *fields; ///< of the object that stands here, or of each one in the list or map that does
+    const dem_fields *fields;  ///< of the object that stands here, or of each one in the list or map that does
 } dem_field;
 
 #define DEM_UNBUILT(key)                                                                                               \
@@ -103,19 +103,19 @@ static inline bool dem_given(uint64_t given, int field)
     return given >> field & 1;
 }
 
-dem_field_reader dem_field_object;    ///< by `fields`, into what stands at the offset
-dem_field_reader dem_field_quantity;  ///< double
-dem_field_reader dem_field_vector;    ///< dem_vec3
-dem_field_reader dem_field_direction; ///< dem_vec3, made a unit vector
-dem_field_reader dem_field_flag;      ///< bool
-dem_field_reader dem_field_whole;     ///< uint64_t, of the range
-dem_field_reader dem_field_text;      ///< const char *
-dem_field_reader dem_field_choice;    ///< an enum
-dem_field_reader dem_field_material;  ///< uint32_t, by name
-dem_field_reader dem_field_shape;     ///< uint32_t, by name
-dem_field_reader dem_field_path;      ///< const char *, made absolute; refused where it cannot be read
-dem_field_reader dem_field_not_built; ///< refused unless null
-dem_field_reader dem_field_nothing;   ///< refused unless {}, [] or null
+dem_field_reader dem_field_object;     ///< by `fields`, into what stands at the offset
+dem_field_reader dem_field_quantity;   ///< double
+dem_field_reader dem_field_vector;     ///< dem_vec3
+dem_field_reader dem_field_direction;  ///< dem_vec3, made a unit vector
+dem_field_reader dem_field_flag;       ///< bool
+dem_field_reader dem_field_whole;      ///< uint64_t, of the range
+dem_field_reader dem_field_text;       ///< const char *
+dem_field_reader dem_field_choice;     ///< an enum
+dem_field_reader dem_field_material;   ///< uint32_t, by name
+dem_field_reader dem_field_shape;      ///< uint32_t, by name
+dem_field_reader dem_field_path;       ///< const char *, made absolute; refused where it cannot be read
+dem_field_reader dem_field_not_built;  ///< refused unless null
+dem_field_reader dem_field_nothing;    ///< refused unless {}, [] or null
 
 /// One number, bare or with a unit.
 dem_status dem_read_quantity(dem_scene_reader *r, const dem_scene_value *v, dem_dimension dimension, dem_range range,
@@ -132,7 +132,7 @@ const char *dem_scene_path(dem_scene_reader *r, const char *path);
 dem_status dem_scene_override_all(dem_scene_reader *r, const char *const *overrides);
 
 /// The sections.
-extern const dem_fields dem_scene_fields; ///< of the outermost object, into the reader's scene
+extern const dem_fields dem_scene_fields;  ///< of the outermost object, into the reader's scene
 dem_field_reader dem_section_materials, dem_section_contacts, dem_section_shapes, dem_section_bodies, dem_section_walls,
     dem_section_fill;
 extern const dem_fields dem_material_fields, dem_contact_fields, dem_shape_fields, dem_body_fields, dem_wall_fields,

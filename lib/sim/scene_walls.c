@@ -8,7 +8,7 @@
 typedef struct wall_text {
     dem_wall_def wall;
     dem_wall_source source;
-    dem_vec3 low, high; // of a box
+    dem_vec3 low, high;  // of a box
 } wall_text;
 
 // ---- forms

@@ -250,7 +250,7 @@ static void put_fill(dem_json_writer *w, const dem_scene *scene, const dem_fill_
         dem_json_put_whole(w, "count", (int64_t)fill->count);
     else
         dem_json_put_number(w, "void_ratio", fill->void_ratio);
-    dem_json_put_whole(w, "seed", (int64_t)fill->seed); // JSON whole numbers are signed: seeds from 2^63 wrap
+    dem_json_put_whole(w, "seed", (int64_t)fill->seed);  // JSON whole numbers are signed: seeds from 2^63 wrap
     dem_json_put_number(w, "gap", fill->gap);
     put_vec(w, "velocity", fill->velocity);
     dem_json_close(w, '}');

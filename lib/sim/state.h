@@ -16,8 +16,8 @@
 #include "sim/walls.h"
 
 enum {
-    DEM_SEGMENT = 64,     ///< bodies whose contacts stand together
-    DEM_IMAGES_ASIDE = 7, ///< images of a periodic side in each direction
+    DEM_SEGMENT = 64,      ///< bodies whose contacts stand together
+    DEM_IMAGES_ASIDE = 7,  ///< images of a periodic side in each direction
     DEM_IMAGES_ROW = 2 * DEM_IMAGES_ASIDE + 1,
     DEM_IMAGES = DEM_IMAGES_ROW * DEM_IMAGES_ROW * DEM_IMAGES_ROW,
 };
@@ -41,52 +41,52 @@ enum {
       "momenta before the contacts")
 
 typedef struct dem_bodies {
-    size_t count, padded; ///< padded: to 8, with the two dummies
-    uint32_t dummy;       ///< row of the first dummy; the second follows
-    size_t momentum_rows; ///< rows of `momentum`: those of the bodies, then slots
+    size_t count, padded;  ///< padded: to 8, with the two dummies
+    uint32_t dummy;        ///< row of the first dummy; the second follows
+    size_t momentum_rows;  ///< rows of `momentum`: those of the bodies, then slots
 #define COLUMN(type, name, width, unit, when, about) type *name;
     DEM_BODY_COLUMNS(COLUMN)
 #undef COLUMN
-    uint32_t *place; ///< [count] row of the i-th body of the scene
+    uint32_t *place;  ///< [count] row of the i-th body of the scene
 } dem_bodies;
 
 /// Two bodies whose bounding balls are nearer than the skin; a < b, or a == b across a periodic side.
 typedef struct dem_pair {
     uint32_t a, b;
-    uint32_t start, count; ///< its contacts in the list of the segment of a
+    uint32_t start, count;  ///< its contacts in the list of the segment of a
     uint32_t adjacent_a, adjacent_b;
-    float normal[3]; ///< direction from a to b between their nearest spheres; [0] > 1: not known yet
-    uint32_t image;  ///< of b
+    float normal[3];  ///< direction from a to b between their nearest spheres; [0] > 1: not known yet
+    uint32_t image;   ///< of b
 } dem_pair;
 
 typedef struct dem_pairs {
-    dem_pair *items; ///< sorted by a, b, image
+    dem_pair *items;  ///< sorted by a, b, image
     size_t count, capacity;
-    uint32_t *first;           ///< [bodies + 1] of the pairs of a
-    uint32_t *adjacency_first; ///< [bodies + 1]
-    uint32_t *adjacency;       ///< [2 count] pairs of a body, as a or b
-    double *adjacency_limit;   ///< [2 count] path of that body at which the pair is looked at
-    uint32_t *fresh;           ///< [count] 1 + index into the results of the present refresh; 0: as it was
+    uint32_t *first;            ///< [bodies + 1] of the pairs of a
+    uint32_t *adjacency_first;  ///< [bodies + 1]
+    uint32_t *adjacency;        ///< [2 count] pairs of a body, as a or b
+    double *adjacency_limit;    ///< [2 count] path of that body at which the pair is looked at
+    uint32_t *fresh;            ///< [count] 1 + index into the results of the present refresh; 0: as it was
 } dem_pairs;
 
 /// Place of the contacts of DEM_SEGMENT bodies (or of their wall contacts of one form) in the columns.
 typedef struct dem_segment {
-    size_t begin, end, capacity;                  ///< multiples of 8
-    size_t slot_begin, slot_count, slot_capacity; ///< momenta for bodies of other domains
+    size_t begin, end, capacity;                   ///< multiples of 8
+    size_t slot_begin, slot_count, slot_capacity;  ///< momenta for bodies of other domains
     bool dirty;
 } dem_segment;
 
 typedef struct dem_contacts {
     dem_contact_columns columns;
-    size_t capacity; ///< of each column
+    size_t capacity;  ///< of each column
     dem_segment *segments;
-    uint32_t *slot_body; ///< [slots] whose momentum a slot belongs to
+    uint32_t *slot_body;  ///< [slots] whose momentum a slot belongs to
     size_t slot_capacity;
 } dem_contacts;
 
 /// Sphere pairs that a refresh has found, by thread.
 typedef struct dem_candidates {
-    uint32_t *pairs; ///< [2 capacity] sphere of a, sphere of b, counted within their shapes
+    uint32_t *pairs;  ///< [2 capacity] sphere of a, sphere of b, counted within their shapes
     size_t count, capacity;
     float *work;
     bool failed;
@@ -94,10 +94,10 @@ typedef struct dem_candidates {
 
 typedef struct dem_fresh {
     uint32_t pair, thread;
-    size_t begin, count; ///< in the candidates of `thread`
-    double slack;        ///< path that may be used up before it is looked at again [m]
+    size_t begin, count;  ///< in the candidates of `thread`
+    double slack;         ///< path that may be used up before it is looked at again [m]
     float normal[3];
-    bool changed; ///< the set of candidates is another one
+    bool changed;  ///< the set of candidates is another one
 } dem_fresh;
 
 typedef enum dem_pass {
@@ -114,7 +114,7 @@ typedef enum dem_pass {
 
 /// What measuring fills; see dem/world.h.
 typedef struct dem_views {
-    uint32_t *shape, *coordination, *by_row; ///< by_row: body of a row
+    uint32_t *shape, *coordination, *by_row;  ///< by_row: body of a row
     double *scale, *mass;
     dem_vec3 *position, *velocity, *spin, *force, *moment;
     dem_quat *orientation;
@@ -125,8 +125,8 @@ typedef struct dem_views {
     dem_contact_record *records;
     size_t record_capacity;
     double elastic;
-    dem_energy since;   ///< dissipated and done by now, but not in the tallies yet [J]
-    double most_energy; ///< largest of kinetic, elastic and change of potential energy seen [J]
+    dem_energy since;    ///< dissipated and done by now, but not in the tallies yet [J]
+    double most_energy;  ///< largest of kinetic, elastic and change of potential energy seen [J]
 } dem_views;
 
 typedef struct dem_search dem_search;
@@ -153,43 +153,43 @@ struct dem_world {
     dem_features features;
     const dem_kernels *kernels;
     const dem_contact_instance *instance, *wall_instance;
-    double *shifts;            ///< [4 an image] (periodic)
-    double skin, margin_least; ///< of the search; of the candidates, by radius: see refresh.h [m]
+    double *shifts;             ///< [4 an image] (periodic)
+    double skin, margin_least;  ///< of the search; of the candidates, by radius: see refresh.h [m]
     int threads;
-    size_t domain_bodies; ///< bodies of a domain: their momenta are written by one thread
+    size_t domain_bodies;  ///< bodies of a domain: their momenta are written by one thread
     // state
     dem_bodies bodies;
     dem_pairs pairs;
     dem_contacts contacts, wall_contacts[DEM_WALL_FORMS];
-    dem_mesh_touches *mesh_touches; ///< [segments]
+    dem_mesh_touches *mesh_touches;  ///< [segments]
     dem_walls walls;
     size_t segment_count;
-    uint64_t steps, epoch_steps;             ///< the time is epoch_time + (steps - epoch_steps) next_step
-    double epoch_time, last_step, next_step; ///< last_step: 0 at the start, where the momenta are of the poses' time
-    double wall_path;                        ///< what sweeping walls add to paths [m]
-    double sweep_speed;                      ///< of sweeping walls about the bodies, at most [m/s]
-    dem_tally *tallies;                      ///< [segments * (1 + DEM_WALL_FORMS)]
-    dem_motion_tally *motion_tallies;        ///< [segments]
+    uint64_t steps, epoch_steps;              ///< the time is epoch_time + (steps - epoch_steps) next_step
+    double epoch_time, last_step, next_step;  ///< last_step: 0 at the start, where the momenta are of the poses' time
+    double wall_path;                         ///< what sweeping walls add to paths [m]
+    double sweep_speed;                       ///< of sweeping walls about the bodies, at most [m/s]
+    dem_tally *tallies;                       ///< [segments * (1 + DEM_WALL_FORMS)]
+    dem_motion_tally *motion_tallies;         ///< [segments]
     double push_work;
-    uint64_t step_reviewed; ///< when all bodies were last asked for their step
-    double energy_start, potential_start; ///< [J]
+    uint64_t step_reviewed;                ///< when all bodies were last asked for their step
+    double energy_start, potential_start;  ///< [J]
     // work space
     dem_team *team;
     dem_search *search;
-    uint32_t *asked; ///< [padded]
+    uint32_t *asked;  ///< [padded]
     size_t asked_count, *part_asked;
-    dem_strained *strained; ///< [padded] (watch)
+    dem_strained *strained;  ///< [padded] (watch)
     size_t strained_count, *part_strained;
-    size_t *parts; ///< [threads + 1] first segment of each
+    size_t *parts;  ///< [threads + 1] first segment of each
     dem_fresh *fresh;
     size_t fresh_count, fresh_capacity;
     int fresh_parts;
-    dem_candidates *candidates; ///< [threads]
+    dem_candidates *candidates;  ///< [threads]
     dem_push *pushes;
     size_t push_count, push_capacity;
     dem_views views;
     dem_pass_time clocks[DEM_PASSES];
-    uint64_t searches; ///< for pairs, since the world was made
+    uint64_t searches;  ///< for pairs, since the world was made
     double warned[8];
     const dem_ctx *ctx;
     dem_ctx own_ctx;

@@ -16,7 +16,7 @@ static const double EQUAL = 1e-12;
 typedef struct form {
     const dem_ball *balls;
     size_t count;
-    double mass, inertia[3], volume; // [kg], [kg m^2], [m^3]
+    double mass, inertia[3], volume;  // [kg], [kg m^2], [m^3]
 } form;
 
 static const char *name_of(const char *name)
@@ -82,7 +82,7 @@ static bool first_is_best(const double inertia[3])
 // the largest (c x n).I^-1 (c x n) over unit vectors n [1/kg]
 static double turning(dem_vec3 c, const double inverse[3])
 {
-    dem_vec3 by[3] = {{0, c.z, -c.y}, {-c.z, 0, c.x}, {c.y, -c.x, 0}}; // c x n for the three axes n
+    dem_vec3 by[3] = {{0, c.z, -c.y}, {-c.z, 0, c.x}, {c.y, -c.x, 0}};  // c x n for the three axes n
     double a[3][3];
     for (int i = 0; i < 3; i++)
         for (int j = 0; j <= i; j++)

@@ -16,17 +16,17 @@
 
 /// All of scale 1.
 typedef struct dem_template {
-    double mass, inverse_mass;             ///< [kg], [1/kg]
-    double inertia[3], inverse_inertia[3]; ///< about the axes of the run frame [kg m^2], [1/(kg m^2)]
-    bool isotropic;                        ///< the three moments are the same number
-    bool centred;                          ///< one sphere, at the centre: its centre is exactly 0
-    dem_quat to_run;                       ///< principal frame -> run frame
-    uint32_t first, count;                 ///< spheres: rows of dem_templates.spheres
-    uint32_t float_first, float_padded;    ///< places in the columns, both multiples of DEM_TEMPLATE_PAD
-    double radius_out;                     ///< from the centre of mass to the farthest point of the surface [m]
-    double radius_min, radius_max;         ///< of the spheres [m]
-    double equivalent_diameter;            ///< of the sphere with the grain's volume [m]
-    double least_mass;                     ///< smallest mass that a contact on the surface can see, see below [kg]
+    double mass, inverse_mass;              ///< [kg], [1/kg]
+    double inertia[3], inverse_inertia[3];  ///< about the axes of the run frame [kg m^2], [1/(kg m^2)]
+    bool isotropic;                         ///< the three moments are the same number
+    bool centred;                           ///< one sphere, at the centre: its centre is exactly 0
+    dem_quat to_run;                        ///< principal frame -> run frame
+    uint32_t first, count;                  ///< spheres: rows of dem_templates.spheres
+    uint32_t float_first, float_padded;     ///< places in the columns, both multiples of DEM_TEMPLATE_PAD
+    double radius_out;                      ///< from the centre of mass to the farthest point of the surface [m]
+    double radius_min, radius_max;          ///< of the spheres [m]
+    double equivalent_diameter;             ///< of the sphere with the grain's volume [m]
+    double least_mass;                      ///< smallest mass that a contact on the surface can see, see below [kg]
     uint32_t material;
 } dem_template;
 
@@ -41,10 +41,10 @@ enum { DEM_TEMPLATE_PAD = 16 };
 typedef struct dem_templates {
     dem_template *items;
     size_t count;
-    double (*spheres)[4]; ///< x y z r of each sphere, aligned to 64 bytes [m]
+    double (*spheres)[4];  ///< x y z r of each sphere, aligned to 64 bytes [m]
     float *x, *y, *z,
-        *r; ///< the same as columns, for culling, aligned to 64 bytes; see dem_template.float_first. Each
-            ///< ball contains the one it stands for, so only the rounding of the test itself remains [m]
+        *r;  ///< the same as columns, for culling, aligned to 64 bytes; see dem_template.float_first. Each
+             ///< ball contains the one it stands for, so only the rounding of the test itself remains [m]
     size_t sphere_count, float_count;
 } dem_templates;
 

@@ -6,12 +6,12 @@
 #include "sim/scene.h"
 #include "sim/touch.h"
 
-enum { REVIEW_EVERY = 1000 }; // steps between questions whether the step may be raised
+enum { REVIEW_EVERY = 1000 };  // steps between questions whether the step may be raised
 
 static const double SAFETY = 0.8, SAFETY_HERTZ = 0.5;
-static const double GROW_FROM = 1.1;  // a step is not raised for less
-static const double LOWER_BY = 0.95;  // of what is allowed, so that it need not be lowered again at once
-static const double LEAST_REST = 0.1; // of the whole room, that a body may use before it is asked again
+static const double GROW_FROM = 1.1;   // a step is not raised for less
+static const double LOWER_BY = 0.95;   // of what is allowed, so that it need not be lowered again at once
+static const double LEAST_REST = 0.1;  // of the whole room, that a body may use before it is asked again
 
 double dem_largest_eigenvalue6(double a[6][6])
 {
@@ -63,7 +63,8 @@ typedef struct body_problem {
 } body_problem;
 
 // k_n n n^T + k_t (1 - n n^T) at `arm`
-static void add_stiffness(const dem_world *w, double a[6][6], size_t row, dem_vec3 arm, dem_vec3 n, double kn, double kt)
+static void add_stiffness(const dem_world *w, double a[6][6], size_t row, dem_vec3 arm, dem_vec3 n, double kn,
+                          double kt)
 {
     const double *inertia = w->bodies.inertia + DEM_ROW * row;
     dem_quat q = body_orientation(&w->bodies, row);
@@ -92,8 +93,8 @@ static double inverse_mass(const dem_world *w, size_t row, dem_vec3 arm, dem_vec
 }
 
 // one contact of a body that stands at `arm` [0] from it and, of a pair, [1] from the other
-static void add_contact(const dem_world *w, body_problem *p, const dem_touch *t, const double *law, const uint32_t row[2],
-                        const dem_vec3 arm[2], bool wall)
+static void add_contact(const dem_world *w, body_problem *p, const dem_touch *t, const double *law,
+                        const uint32_t row[2], const dem_vec3 arm[2], bool wall)
 {
     double mass = inverse_mass(w, row[0], arm[0], t->normal);
     if (!wall)

@@ -18,10 +18,10 @@
 #include "sim/state.h"
 
 typedef struct dem_step_bound {
-    double eigenvalue; ///< of M^-1 K, of the body that sets the bound [1/s^2]
-    double damping;    ///< of M^-1 C, of the same body [1/s]
-    double step;       ///< the limit [s]; INFINITY without contacts
-    size_t row;        ///< that body
+    double eigenvalue;  ///< of M^-1 K, of the body that sets the bound [1/s^2]
+    double damping;     ///< of M^-1 C, of the same body [1/s]
+    double step;        ///< the limit [s]; INFINITY without contacts
+    size_t row;         ///< that body
 } dem_step_bound;
 
 /// The bound for the contacts that touch, or for all that are listed and may do so before the lists change.

@@ -21,8 +21,8 @@ dem_touch dem_touch_of_pair(const dem_world *w, size_t at)
     }
     dem_vec3 d = v3_sub(v3_add(b, shift), a), n = v3_unit(d);
     double overlap = ra + rb - v3_norm(d), least = smaller(ra, rb);
-    return (dem_touch){at,           v3_along(a, ra - overlap / 2, n), n, overlap, ra * rb / (ra + rb), least * least / (ra + rb),
-                       shift};
+    return (dem_touch){
+        at, v3_along(a, ra - overlap / 2, n), n, overlap, ra * rb / (ra + rb), least * least / (ra + rb), shift};
 }
 
 dem_touch dem_touch_of_wall(const dem_world *w, dem_wall_form form, size_t at)

@@ -5,13 +5,13 @@
 #include "sim/contacts.h"
 
 typedef struct dem_touch {
-    size_t place;           ///< in the columns
-    dem_vec3 point;         ///< of contact [m]
-    dem_vec3 normal;        ///< unit, out of the first body
-    double overlap;         ///< negative: a gap [m]
-    double reduced;         ///< R* [m]
-    double area_length;     ///< R_min^2 / (R_i + R_j), or R [m]
-    dem_vec3 shift;         ///< of the second body's image [m]
+    size_t place;        ///< in the columns
+    dem_vec3 point;      ///< of contact [m]
+    dem_vec3 normal;     ///< unit, out of the first body
+    double overlap;      ///< negative: a gap [m]
+    double reduced;      ///< R* [m]
+    double area_length;  ///< R_min^2 / (R_i + R_j), or R [m]
+    dem_vec3 shift;      ///< of the second body's image [m]
 } dem_touch;
 
 dem_touch dem_touch_of_pair(const dem_world *world, size_t place);

@@ -6,10 +6,10 @@
 
 typedef struct dem_truth {
     size_t contacts,
-        walls;      ///< overlapping sphere pairs of different bodies (over all images), spheres in planes or cylinders
-    size_t missed;  ///< of both, those that are not listed
-    size_t doubled; ///< listed more than once
-    size_t unsound; ///< rows, places or sums of the structures that contradict each other
+        walls;       ///< overlapping sphere pairs of different bodies (over all images), spheres in planes or cylinders
+    size_t missed;   ///< of both, those that are not listed
+    size_t doubled;  ///< listed more than once
+    size_t unsound;  ///< rows, places or sums of the structures that contradict each other
 } dem_truth;
 
 dem_status dem_world_validate(const dem_world *world, dem_truth *truth, dem_error *error);

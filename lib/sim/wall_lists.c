@@ -9,13 +9,13 @@
 #include "sim/mesh_touch.h"
 #include "sim/refresh.h"
 
-static const double WALL_STRIDES = 2; // a wall's margin lasts longer than that of pairs: its list is cheap
+static const double WALL_STRIDES = 2;  // a wall's margin lasts longer than that of pairs: its list is cheap
 
 // a segment's new list of one form
 typedef struct new_list {
     size_t segment;
     dem_wall_form form;
-    size_t begin, count; // in the items
+    size_t begin, count;  // in the items
     dem_mesh_touches touches;
 } new_list;
 

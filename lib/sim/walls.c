@@ -7,7 +7,7 @@
 #include "base/status.h"
 #include "sim/mesh_wall.h"
 
-static const double FAR_AWAY = 1e155; // [m] farther than any dummy body
+static const double FAR_AWAY = 1e155;  // [m] farther than any dummy body
 
 static const dem_wall_form form_of[] = {
     [DEM_WALL_PLANE] = DEM_FORM_PLANE, [DEM_WALL_CYLINDER] = DEM_FORM_CYLINDER, [DEM_WALL_MESH] = DEM_FORM_MESH};

@@ -14,13 +14,13 @@ typedef struct dem_wall {
     char *name;
     dem_wall_form form;
     uint32_t material;
-    dem_vec3 point, normal; ///< at time 0; see dem_wall_def
-    double radius;          ///< of a cylinder, negative where the bodies are outside [m]
-    dem_mesh_wall *mesh;    ///< in the frame of time 0
+    dem_vec3 point, normal;  ///< at time 0; see dem_wall_def
+    double radius;           ///< of a cylinder, negative where the bodies are outside [m]
+    dem_mesh_wall *mesh;     ///< in the frame of time 0
     dem_vec3 velocity, through, spin;
-    bool moves;        ///< its surface has a velocity
-    bool sweeps;       ///< ... and its shape does not stay in place
-    dem_vec3 position; ///< now: where the frame of time 0 has moved to [m]
+    bool moves;         ///< its surface has a velocity
+    bool sweeps;        ///< ... and its shape does not stay in place
+    dem_vec3 position;  ///< now: where the frame of time 0 has moved to [m]
     dem_quat orientation;
 } dem_wall;
 
@@ -31,7 +31,7 @@ typedef struct dem_walls {
     dem_wall *items;
     size_t count;
     double *rows;
-    bool move, sweep; ///< some do
+    bool move, sweep;  ///< some do
 } dem_walls;
 
 /// Errors: DEM_BAD_INPUT, DEM_UNAVAILABLE for a mesh without Embree.

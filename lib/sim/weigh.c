@@ -5,10 +5,10 @@
 
 #include <string.h>
 
-static const double MERGE_POINT = 0.5;     // of R*: distance of contact points that count as one [-]
-static const double MERGE_ANGLE = 0.96593; // cosine of 15 degrees between their normals
+static const double MERGE_POINT = 0.5;      // of R*: distance of contact points that count as one [-]
+static const double MERGE_ANGLE = 0.96593;  // cosine of 15 degrees between their normals
 
-enum { TOGETHER = 64 }; // contacts of a pair that are held at a time
+enum { TOGETHER = 64 };  // contacts of a pair that are held at a time
 
 static bool coincide(const dem_touch *a, const dem_touch *b)
 {
@@ -83,7 +83,7 @@ static void weigh_segment(const weigher *g)
         for (end = begin; end < size && same_pair(g, segment_place(s, end), first); end++)
             c->weight[segment_place(s, end)] = 1;
         if (c->a[first] >= g->w->bodies.count || end - begin < 2)
-            continue; // idle, or alone
+            continue;  // idle, or alone
         if (g->w->multiple == DEM_MULTIPLE_MEAN)
             weigh_mean(g, begin, end);
         else

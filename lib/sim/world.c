@@ -208,9 +208,9 @@ void dem_world_destroy(dem_world *w)
     }
     dem_team_destroy(w->team);
     dem_views_release(&w->views);
-    void *all[] = {w->clumps,   w->shape_names,   w->shifts, w->mesh_touches, w->tallies,    w->motion_tallies,
-                   w->asked,    w->part_asked,    w->parts,  w->fresh,        w->candidates, w->pushes,
-                   w->strained, w->part_strained};
+    void *all[] = {w->clumps,         w->shape_names, w->shifts,     w->mesh_touches, w->tallies,
+                   w->motion_tallies, w->asked,       w->part_asked, w->parts,        w->fresh,
+                   w->candidates,     w->pushes,      w->strained,   w->part_strained};
     for (size_t i = 0; i < sizeof all / sizeof *all; i++)
         free(all[i]);
     free(w);
@@ -240,9 +240,9 @@ static void contact_pass(dem_world *w, size_t begin, size_t end, double kick)
     for (size_t i = begin; i < end; i++) {
         const dem_segment *s = &w->contacts.segments[i];
         if (s->begin < s->end)
-            w->instance->pairs(
-                w->features, &rows,
-                &(dem_contact_job){w->contacts.columns, s->begin, s->end, w->last_step, kick, w->next_step, &w->tallies[i], NULL});
+            w->instance->pairs(w->features, &rows,
+                               &(dem_contact_job){w->contacts.columns, s->begin, s->end, w->last_step, kick,
+                                                  w->next_step, &w->tallies[i], NULL});
     }
 }
 
@@ -255,8 +255,9 @@ static void wall_pass(dem_world *w, size_t begin, size_t end, double kick)
             const dem_segment *s = &contacts->segments[i];
             if (s->begin < s->end)
                 w->wall_instance->walls[form](w->features, &rows,
-                                              &(dem_contact_job){contacts->columns, s->begin, s->end, w->last_step, kick, w->next_step, &w->tallies[(1 + form) * w->segment_count + i],
-                                                                 NULL});
+                                              &(dem_contact_job){contacts->columns, s->begin, s->end, w->last_step,
+                                                                 kick, w->next_step,
+                                                                 &w->tallies[(1 + form) * w->segment_count + i], NULL});
         }
     }
 }

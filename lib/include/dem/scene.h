@@ -52,10 +52,10 @@ typedef struct dem_pair_law {
     uint32_t materials[2];
     dem_effective_mass effective_mass;
     dem_normal_law normal;
-    double stiffness;             ///< of the linear law [N/m]; 0: k = E A / L from the materials
+    double stiffness;  ///< of the linear law [N/m]; 0: k = E A / L from the materials
     dem_damping_law damping;
-    double restitution;           ///< 0..1 [-]
-    double damping_rate;          ///< G [1/s]
+    double restitution;   ///< 0..1 [-]
+    double damping_rate;  ///< G [1/s]
     dem_tail tail;
     dem_friction_law friction;
     double friction_coefficient;  ///< [-]
@@ -77,11 +77,11 @@ typedef struct dem_shape_def {
 /// One body as it starts, velocities at the time of the position.
 typedef struct dem_body_def {
     uint32_t shape;
-    double scale;           ///< of the shape [-]
-    dem_vec3 position;      ///< of the centre of mass [m]
-    dem_quat orientation;   ///< principal frame -> space
-    dem_vec3 velocity;      ///< [m/s]
-    dem_vec3 spin;          ///< angular velocity, axes of space [rad/s]
+    double scale;          ///< of the shape [-]
+    dem_vec3 position;     ///< of the centre of mass [m]
+    dem_quat orientation;  ///< principal frame -> space
+    dem_vec3 velocity;     ///< [m/s]
+    dem_vec3 spin;         ///< angular velocity, axes of space [rad/s]
 } dem_body_def;
 
 typedef enum dem_size_law {
@@ -96,11 +96,11 @@ typedef enum dem_size_law {
 /// How the equivalent diameters of bodies are drawn.
 typedef struct dem_size_def {
     dem_size_law law;
-    double a, b;             ///< [m], of the lognormal b [-]
+    double a, b;               ///< [m], of the lognormal b [-]
     double smallest, largest;  ///< draws outside are repeated [m]; 0 and INFINITY: any
-    bool by_mass;            ///< the law tells shares of mass, not of number
-    const double *sizes;     ///< ascending [m]
-    const double *passing;   ///< ascending from 0 to 1 [-]
+    bool by_mass;              ///< the law tells shares of mass, not of number
+    const double *sizes;       ///< ascending [m]
+    const double *passing;     ///< ascending from 0 to 1 [-]
     size_t table_count;
 } dem_size_def;
 
@@ -115,11 +115,11 @@ typedef struct dem_fill_def {
     const dem_mix_def *mix;
     size_t mix_count;
     bool share_by_mass;
-    dem_vec3 low, high;   ///< box that holds every sphere of every body [m]
-    size_t count;         ///< 0: by void ratio
-    double void_ratio;    ///< of the box: volume of voids / volume of solids [-]
-    double gap;           ///< least distance between surfaces [m]
-    dem_vec3 velocity;    ///< of all [m/s]
+    dem_vec3 low, high;  ///< box that holds every sphere of every body [m]
+    size_t count;        ///< 0: by void ratio
+    double void_ratio;   ///< of the box: volume of voids / volume of solids [-]
+    double gap;          ///< least distance between surfaces [m]
+    dem_vec3 velocity;   ///< of all [m/s]
     uint64_t seed;
 } dem_fill_def;
 
@@ -138,15 +138,15 @@ typedef struct dem_wall_def {
     const char *name;
     dem_wall_kind kind;
     uint32_t material;
-    dem_vec3 point;          ///< of a plane; of a cylinder's axis [m]
-    dem_vec3 normal;         ///< unit, towards the bodies; of a cylinder: its axis
-    double radius;           ///< of a cylinder [m]
-    bool outside;            ///< the bodies are outside of a cylinder
-    const char *mesh_file;   ///< resolved path
-    dem_mesh mesh;           ///< [m]; read from mesh_file where that is given
-    dem_vec3 velocity;       ///< [m/s]
-    dem_vec3 through;        ///< a point of the axis of rotation [m]
-    dem_vec3 spin;           ///< angular velocity [rad/s]
+    dem_vec3 point;         ///< of a plane; of a cylinder's axis [m]
+    dem_vec3 normal;        ///< unit, towards the bodies; of a cylinder: its axis
+    double radius;          ///< of a cylinder [m]
+    bool outside;           ///< the bodies are outside of a cylinder
+    const char *mesh_file;  ///< resolved path
+    dem_mesh mesh;          ///< [m]; read from mesh_file where that is given
+    dem_vec3 velocity;      ///< [m/s]
+    dem_vec3 through;       ///< a point of the axis of rotation [m]
+    dem_vec3 spin;          ///< angular velocity [rad/s]
 } dem_wall_def;
 
 typedef enum dem_leaving { DEM_LEAVING_ERROR, DEM_LEAVING_IGNORE } dem_leaving;
@@ -163,10 +163,10 @@ typedef enum dem_local_frame {
 } dem_local_frame;
 
 typedef struct dem_damping_def {
-    double local;            ///< Cundall's alpha, 0..1 [-]
+    double local;  ///< Cundall's alpha, 0..1 [-]
     dem_local_frame local_frame;
-    bool exclude_gravity;    ///< local damping acts on the contact forces only
-    double viscous;          ///< F = -c m v, T = -c L [1/s]
+    bool exclude_gravity;  ///< local damping acts on the contact forces only
+    double viscous;        ///< F = -c m v, T = -c L [1/s]
 } dem_damping_def;
 
 /// How several contacts of one pair of bodies add up.
@@ -181,11 +181,11 @@ typedef struct dem_time_def {
 
 typedef struct dem_output_def {
     const char *directory;
-    double frames;          ///< interval [s]; 0: none
-    double series;          ///< interval [s]; 0: none
-    double checkpoint;      ///< interval [s]; 0: none
-    bool checkpoint_wall;   ///< the interval is of the clock on the wall
-    bool energy;            ///< keep the energy ledger
+    double frames;         ///< interval [s]; 0: none
+    double series;         ///< interval [s]; 0: none
+    double checkpoint;     ///< interval [s]; 0: none
+    bool checkpoint_wall;  ///< the interval is of the clock on the wall
+    bool energy;           ///< keep the energy ledger
 } dem_output_def;
 
 /// A whole scene. Arrays are borrowed; those of a scene that was read belong to `owner`.

@@ -51,50 +51,50 @@ typedef struct dem_body_view {
 
 /// One sphere that touches another body's sphere or a wall.
 typedef struct dem_contact {
-    uint32_t body, other;              ///< other: of the second body; UINT32_MAX: a wall
-    uint32_t sphere, other_sphere;     ///< of the shapes; of a wall: 0
-    uint32_t wall;                     ///< index into the scene's walls; UINT32_MAX: none
-    dem_vec3 point;                    ///< [m]
-    dem_vec3 normal;                   ///< unit, out of `body`
-    double overlap;                    ///< [m]
-    double normal_force;               ///< positive where it pushes apart [N]
-    dem_vec3 friction_force;           ///< on `body` [N]
+    uint32_t body, other;           ///< other: of the second body; UINT32_MAX: a wall
+    uint32_t sphere, other_sphere;  ///< of the shapes; of a wall: 0
+    uint32_t wall;                  ///< index into the scene's walls; UINT32_MAX: none
+    dem_vec3 point;                 ///< [m]
+    dem_vec3 normal;                ///< unit, out of `body`
+    double overlap;                 ///< [m]
+    double normal_force;            ///< positive where it pushes apart [N]
+    dem_vec3 friction_force;        ///< on `body` [N]
 } dem_contact;
 
 typedef struct dem_wall_view {
-    dem_vec3 position;     ///< where the frame of time 0 has moved to [m]
+    dem_vec3 position;  ///< where the frame of time 0 has moved to [m]
     dem_quat orientation;
-    dem_vec3 force;        ///< of the bodies on the wall [N]
-    dem_vec3 moment;       ///< about the wall's `through` [N m]
+    dem_vec3 force;   ///< of the bodies on the wall [N]
+    dem_vec3 moment;  ///< about the wall's `through` [N m]
     size_t contacts;
 } dem_wall_view;
 
 /// The energy ledger; what was dissipated and what walls have done is summed since the scene's start [J].
 typedef struct dem_energy {
-    double kinetic, rotational;   ///< of translation, of rotation
-    double potential;             ///< of gravity, 0 at the origin
-    double elastic;               ///< in the contacts
-    double friction;              ///< dissipated by sliding
-    double viscous;               ///< dissipated by the dashpots of contacts
-    double local;                 ///< dissipated by local damping
-    double drag;                  ///< dissipated by global viscous damping
-    double work;                  ///< done by moving walls and pushes
-    double start;                 ///< kinetic + rotational + potential + elastic at the scene's start
-    double error;                 ///< imbalance of all of these over the largest energy turned over [-]; NAN: no ledger kept
+    double kinetic, rotational;  ///< of translation, of rotation
+    double potential;            ///< of gravity, 0 at the origin
+    double elastic;              ///< in the contacts
+    double friction;             ///< dissipated by sliding
+    double viscous;              ///< dissipated by the dashpots of contacts
+    double local;                ///< dissipated by local damping
+    double drag;                 ///< dissipated by global viscous damping
+    double work;                 ///< done by moving walls and pushes
+    double start;                ///< kinetic + rotational + potential + elastic at the scene's start
+    double error;  ///< imbalance of all of these over the largest energy turned over [-]; NAN: no ledger kept
 } dem_energy;
 
 typedef struct dem_figures {
-    double time;                ///< [s]
+    double time;  ///< [s]
     uint64_t step;
     size_t bodies, spheres;
-    size_t contacts;            ///< touching sphere pairs of different bodies
+    size_t contacts;  ///< touching sphere pairs of different bodies
     size_t wall_contacts;
-    double coordination;        ///< mean number of bodies and walls a body touches [-]
-    double overlap_ratio;       ///< largest overlap over the smaller radius now [-]
+    double coordination;           ///< mean number of bodies and walls a body touches [-]
+    double overlap_ratio;          ///< largest overlap over the smaller radius now [-]
     double largest_overlap_ratio;  ///< of the run so far [-]
-    double fastest;             ///< largest speed of a surface point [m/s]
-    dem_vec3 centre;            ///< mean of the centres of mass, by mass [m]
-    double highest;             ///< largest coordinate of a surface along -gravity (z without gravity) [m]
+    double fastest;                ///< largest speed of a surface point [m/s]
+    dem_vec3 centre;               ///< mean of the centres of mass, by mass [m]
+    double highest;                ///< largest coordinate of a surface along -gravity (z without gravity) [m]
     dem_energy energy;
 } dem_figures;
 

@@ -49,10 +49,10 @@ DEM_INLINE wide3 spring_turn(wide3 spring, wide3 n, wide turn)
 }
 
 typedef struct friction_law {
-    wide3 force;  ///< on the first body [N]
-    wide3 spring; ///< its length afterwards [m]
-    wide3 dash;   ///< what of the force is not the spring's [N] (ledger)
-    wide lost;    ///< dissipated by sliding since the last step [J] (ledger)
+    wide3 force;   ///< on the first body [N]
+    wide3 spring;  ///< its length afterwards [m]
+    wide3 dash;    ///< what of the force is not the spring's [N] (ledger)
+    wide lost;     ///< dissipated by sliding since the last step [J] (ledger)
 } friction_law;
 
 /// `spring` has been turned; `slip` is the tangential velocity of the second surface over the first [m/s], `vn` that

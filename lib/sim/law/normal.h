@@ -6,10 +6,10 @@
 #include "sim/features.h"
 
 typedef struct normal_law {
-    wide elastic;   ///< force of the spring [N]
-    wide force;     ///< with the dashpot [N]
-    wide stiffness; ///< tangent of the spring [N/m]
-    wide radius;    ///< sqrt(R* overlap), of the contact [m] (Hertz only)
+    wide elastic;    ///< force of the spring [N]
+    wide force;      ///< with the dashpot [N]
+    wide stiffness;  ///< tangent of the spring [N/m]
+    wide radius;     ///< sqrt(R* overlap), of the contact [m] (Hertz only)
 } normal_law;
 
 /// R* = R_i R_j / (R_i + R_j)
