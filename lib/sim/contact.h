@@ -6,7 +6,8 @@
 #define DEM_SIM_CONTACT_H
 
 #include "sim/kernels.h"
-#include "sim/law/friction.h"
+#include "sim/law/adhesion.h"
+#include "sim/law/turning.h"
 
 enum { BATCH = 64 };
 
@@ -26,7 +27,18 @@ enum {
     AT_STRAIN = 23,    // of the time step, times the mass
     AT_LEAST_A = 24,   // 1 / least mass of a, and of b
     AT_LEAST_B = 25,
-    AT_COUNT = 26
+    AT_AREA_SHARED = 26,  // of the lens, over pi
+    AT_VOLUME_SHARED = 27,
+    AT_SPIN = 28,          // of b over a
+    AT_MOMENT = 31,        // on a
+    AT_ROLL_INERTIA = 34,  // 1 / I_r
+    AT_BRISK_A = 35,       // 1 / least moment of a, and of b
+    AT_BRISK_B = 36,
+    AT_TURN_STRAIN = 37,  // of the time step, times the moment of inertia
+    AT_WALL_SPIN = 38,
+    AT_RADIUS = 41,  // the smaller one
+    AT_BOUND = 42,   // of what is taken off the spin
+    AT_COUNT = 43
 };
 
 typedef struct contact_batch {
@@ -98,6 +110,28 @@ DEM_INLINE bool damped(const dem_features f)
 {
     return f.rate || f.restitution;
 }
+DEM_INLINE bool turns(const dem_features f)
+{
+    return f.rolling || f.roll_constant || f.twisting || f.twist_constant;
+}
+DEM_INLINE bool adheres(const dem_features f)
+{
+    return f.sjkr || f.dmt;
+}
+DEM_INLINE bool needs_reduced(const dem_features f)
+{
+    return f.hertz || turns(f) || f.dmt;
+}
+
+/// 1 / (I + m r^2) of a body that rolls on a surface of radius r, with its mean moment I, and 1 / its least moment.
+DEM_INLINE wide inverse_rolling(const dem_rows *rows, const uint32_t *body, wide radius, wide *brisk)
+{
+    wide inertia[8];
+    rows_load(rows->inertia, DEM_ROW, body, inertia);
+    wide mean = (inertia[1] + inertia[2] + inertia[3]) * wide_all(1.0 / 3);
+    *brisk = wide_max(inertia[1], wide_max(inertia[2], inertia[3]));
+    return inertia[0] * mean / wide_fma(radius * radius, mean, inertia[0]);
+}
 
 /// Remembers the largest overlap over the smaller radius; rarely a new one.
 DEM_INLINE void note_overlap(double *largest, wide overlap, wide radius)
@@ -111,6 +145,12 @@ DEM_INLINE void note_overlap(double *largest, wide overlap, wide radius)
             if (d[i] > *largest * r[i])
                 *largest = d[i] / r[i];
     }
+}
+
+DEM_INLINE void put_lens(contact_batch *batch, size_t g, lens shared)
+{
+    wide_store(batch->at[AT_AREA_SHARED] + g, shared.area);
+    wide_store(batch->at[AT_VOLUME_SHARED] + g, shared.volume);
 }
 
 DEM_INLINE void pair_geometry(const dem_features f, const dem_rows *rows, const dem_contact_columns *c, size_t at,
@@ -138,11 +178,23 @@ DEM_INLINE void pair_geometry(const dem_features f, const dem_rows *rows, const 
     if (damped(f) && f.local_mass)
         wide_store(batch->at[AT_MASS] + g,
                    inverse_local_mass(f, rows, c->a + at, &a, n) + inverse_local_mass(f, rows, c->b + at, &b, n));
-    if (f.hertz)
+    if (needs_reduced(f))
         wide_store(batch->at[AT_REDUCED] + g, reduced_radius(a.sphere[3], b.sphere[3]));
     if (f.young) {
         wide least = wide_min(a.sphere[3], b.sphere[3]);
         wide_store(batch->at[AT_AREA] + g, least * least / (a.sphere[3] + b.sphere[3]));
+    }
+    if (f.sjkr)
+        put_lens(batch, g, lens_of_balls(a.sphere[3], b.sphere[3], distance, overlap));
+    if (f.roll_bound)
+        wide_store(batch->at[AT_RADIUS] + g, wide_min(a.sphere[3], b.sphere[3]));
+    if (turns(f)) {
+        wide brisk_a, brisk_b,
+            inverse = inverse_rolling(rows, c->a + at, a.sphere[3], &brisk_a) +
+                      inverse_rolling(rows, c->b + at, b.sphere[3], &brisk_b);
+        wide_store(batch->at[AT_ROLL_INERTIA] + g, inverse);
+        wide_store(batch->at[AT_BRISK_A] + g, brisk_a);
+        wide_store(batch->at[AT_BRISK_B] + g, brisk_b);
     }
 }
 
@@ -157,7 +209,9 @@ DEM_INLINE void pair_velocity(const dem_features f, const dem_rows *rows, const 
     wide3 va = cross3(spin_a, p), vb = cross3(spin_b, q);
     put3(batch, AT_VELOCITY, g,
          (wide3){(b[0] - a[0]) + (vb.x - va.x), (b[1] - a[1]) + (vb.y - va.y), (b[2] - a[2]) + (vb.z - va.z)});
-    if (f.friction)
+    if (turns(f))
+        put3(batch, AT_SPIN, g, (wide3){b[3] - a[3], b[4] - a[4], b[5] - a[5]});
+    if (f.friction || f.rolling)
         wide_store(batch->at[AT_TURN] + g,
                    wide_all(0.5) * dot3((wide3){a[3] + b[3], a[4] + b[4], a[5] + b[5]}, get3(batch, AT_NORMAL, g)));
     if (damped(f) && !f.local_mass)
@@ -206,10 +260,19 @@ DEM_INLINE void wall_geometry(const dem_features f, const dem_rows *rows, const 
     note_overlap(largest, overlap, a.sphere[3]);
     if (damped(f) && f.local_mass)
         wide_store(batch->at[AT_MASS] + g, inverse_local_mass(f, rows, c->a + at, &a, n));
-    if (f.hertz)
+    if (needs_reduced(f))
         wide_store(batch->at[AT_REDUCED] + g, a.sphere[3]);
     if (f.young)
         wide_store(batch->at[AT_AREA] + g, a.sphere[3]);
+    if (f.sjkr)
+        put_lens(batch, g, lens_at_wall(a.sphere[3], overlap));
+    if (f.roll_bound)
+        wide_store(batch->at[AT_RADIUS] + g, a.sphere[3]);
+    if (turns(f)) {
+        wide brisk;
+        wide_store(batch->at[AT_ROLL_INERTIA] + g, inverse_rolling(rows, c->a + at, a.sphere[3], &brisk));
+        wide_store(batch->at[AT_BRISK_A] + g, brisk);
+    }
 }
 
 DEM_INLINE void wall_velocity(const dem_features f, const dem_rows *rows, const dem_contact_columns *c, size_t at,
@@ -219,7 +282,7 @@ DEM_INLINE void wall_velocity(const dem_features f, const dem_rows *rows, const 
     rows_load(rows->bodies + 8, DEM_BODY_ROW, c->a + at, a);
     wide3 spin = {a[3], a[4], a[5]}, p = get3(batch, AT_A, g), v = cross3(spin, p);
     v = (wide3){wide_all(0) - (a[0] + v.x), wide_all(0) - (a[1] + v.y), wide_all(0) - (a[2] + v.z)};
-    wide3 turning = spin;
+    wide3 turning = spin, over = {wide_all(0) - spin.x, wide_all(0) - spin.y, wide_all(0) - spin.z};
     if (f.moving) {
         wide wall[8], pose[4];
         rows_load(rows->walls + 8, 16, c->sphere_b + at, wall);
@@ -231,9 +294,14 @@ DEM_INLINE void wall_velocity(const dem_features f, const dem_rows *rows, const 
         v = (wide3){v.x + w.x, v.y + w.y, v.z + w.z};
         turning = (wide3){spin.x + spin_wall.x, spin.y + spin_wall.y, spin.z + spin_wall.z};
         put3(batch, AT_WALL, g, w);
+        over = (wide3){spin_wall.x - spin.x, spin_wall.y - spin.y, spin_wall.z - spin.z};
+        if (turns(f))
+            put3(batch, AT_WALL_SPIN, g, spin_wall);
     }
     put3(batch, AT_VELOCITY, g, v);
-    if (f.friction)
+    if (turns(f))
+        put3(batch, AT_SPIN, g, over);
+    if (f.friction || f.rolling)
         wide_store(batch->at[AT_TURN] + g, wide_all(0.5) * dot3(turning, get3(batch, AT_NORMAL, g)));
     if (damped(f) && !f.local_mass)
         wide_store(batch->at[AT_MASS] + g, a[6]);
@@ -243,12 +311,17 @@ DEM_INLINE void wall_velocity(const dem_features f, const dem_rows *rows, const 
 
 DEM_INLINE void load_law(const dem_features f, const dem_rows *rows, const uint32_t *row, wide law[LAW_SLOTS])
 {
+    const bool more = turns(f) || adheres(f) || f.roll_bound;
     if (f.mixed) {
-        rows_load(rows->laws, LAW_SLOTS, row, law);
-        rows_load(rows->laws + 8, LAW_SLOTS, row, law + 8);
-    } else
-        for (int k = 0; k < LAW_SLOTS; k++)
-            law[k] = wide_all(rows->laws[k]);
+        for (int k = 0; k < (more ? LAW_SLOTS : LAW_MORE); k += 8)
+            rows_load(rows->laws + k, LAW_SLOTS, row, law + k);
+        return;
+    }
+    // in two short loops, which compilers unroll, so that what is not needed is not even loaded
+    for (int k = 0; k < LAW_MORE; k++)
+        law[k] = wide_all(rows->laws[k]);
+    for (int k = LAW_MORE; more && k < LAW_SLOTS; k++)
+        law[k] = wide_all(rows->laws[k]);
 }
 
 /// Sums in lanes of 8 whatever the width.
@@ -277,15 +350,16 @@ DEM_INLINE void put_losses(const contact_loss *loss, wide power, size_t g, dem_c
     }
 }
 
-DEM_INLINE void put_records(const dem_features f, const contact_batch *batch, size_t g, const normal_law *n,
-                            const wide3 *force, const wide3 *spring, wide slide, wide mass, wide weight, wide_mask on,
-                            dem_contact_record *records)
+DEM_INLINE void put_records(const dem_features f, const contact_batch *batch, size_t g, const normal_law *n, wide net,
+                            wide pulled, const wide3 *force, const wide3 *spring, wide slide, wide mass, wide weight,
+                            wide_mask on, dem_contact_record *records)
 {
     double elastic[DEM_WIDTH], stiffness[DEM_WIDTH], normal[DEM_WIDTH], held[DEM_WIDTH], slip[DEM_WIDTH], m[DEM_WIDTH];
-    double x[3][DEM_WIDTH];
+    double x[3][DEM_WIDTH], energy[DEM_WIDTH];
     wide_store(elastic, n->elastic * weight);
     wide_store(stiffness, n->stiffness * weight);
-    wide_store(normal, n->force * weight);
+    wide_store(normal, net * weight);
+    wide_store(energy, pulled * weight);
     wide_store(held, wide_all(0.5) * slide * dot3(*spring, *spring) * weight);
     wide_store(slip, slide);
     wide_store(m, mass);
@@ -309,9 +383,23 @@ DEM_INLINE void put_records(const dem_features f, const contact_batch *batch, si
         if (r->touches) {
             // of the linear part F = k d the half, of Hertz' F = 2/3 k d two fifths
             double linear = f.hertz ? 3 * elastic[i] - 2 * stiffness[i] * r->overlap : elastic[i];
-            r->elastic_normal = (linear / 2 + (elastic[i] - linear) * 2 / 5) * r->overlap;
+            r->elastic_normal = (linear / 2 + (elastic[i] - linear) * 2 / 5) * r->overlap + energy[i];
             r->elastic_slide = held[i];
         }
+    }
+}
+
+DEM_INLINE void put_turning_records(size_t g, wide3 moment, wide held, dem_contact_record *records)
+{
+    double x[3][DEM_WIDTH], energy[DEM_WIDTH];
+    wide_store(x[0], moment.x);
+    wide_store(x[1], moment.y);
+    wide_store(x[2], moment.z);
+    wide_store(energy, held);
+    for (size_t i = 0; i < DEM_WIDTH; i++) {
+        for (int k = 0; k < 3; k++)
+            records[g + i].turning[k] = x[k][i];
+        records[g + i].elastic_turn = energy[i];
     }
 }
 
@@ -337,6 +425,58 @@ DEM_INLINE wide contact_strain(const dem_features f, const wide *law, const norm
     return wide_all(wall ? 1 : 2) * (step * wide_fma(step, k, c + c));
 }
 
+DEM_INLINE wide3 load3(double *const column[3], size_t at)
+{
+    return (wide3){wide_load(column[0] + at), wide_load(column[1] + at), wide_load(column[2] + at)};
+}
+DEM_INLINE void store3(double *const column[3], size_t at, wide3 v)
+{
+    wide_store(column[0] + at, v.x);
+    wide_store(column[1] + at, v.y);
+    wide_store(column[2] + at, v.z);
+}
+
+typedef struct contact_moment {
+    wide lost;   // dissipated since the last step [J]
+    wide power;  // of a turning wall [W]
+} contact_moment;
+
+/// The moments of a contact, which it hands on or, for measuring, writes down.
+DEM_INLINE contact_moment contact_turning(const dem_features f, const dem_contact_job *job, size_t at, size_t g,
+                                          contact_batch *batch, const wide *law, const normal_law *n, turning_state *s,
+                                          wide weight, wide_mask on, const bool wall, const bool record)
+{
+    const dem_contact_columns *c = &job->columns;
+    s->spin = get3(batch, AT_SPIN, g);
+    s->inverse = wide_load(batch->at[AT_ROLL_INERTIA] + g);
+    if (f.rolling)
+        s->roll = spring_turn(load3(c->roll, at), s->n, s->step * wide_load(batch->at[AT_TURN] + g));
+    if (f.twisting)
+        s->twist = wide_load(c->twist + at);
+    turning_law t = turning(f, law, n, s, wide_all(job->next_step), on);
+    contact_moment result = {t.lost * weight, wide_all(0)};
+    if (f.ledger) {
+        wide3 was = load3(c->drag, at), both = {was.x + t.drag.x, was.y + t.drag.y, was.z + t.drag.z};
+        result.lost = wide_fma(wide_all(0.5) * s->step * weight, dot3(both, s->spin), result.lost);
+    }
+    wide3 moment = scale3(t.moment, weight);
+    if (wall && f.moving)
+        result.power = dot3(moment, get3(batch, AT_WALL_SPIN, g));
+    if (record) {
+        put_turning_records(g, moment, wide_all(0.5) * weight * t.held, job->records + (at - g - job->begin));
+        return result;
+    }
+    put3(batch, AT_MOMENT, g, scale3(moment, wide_all(job->kick)));
+    wide_store(batch->at[AT_TURN_STRAIN] + g, wide_all(wall ? 1 : 2) * t.strain);
+    if (f.ledger)
+        store3(c->drag, at, t.drag);
+    if (f.rolling)
+        store3(c->roll, at, t.roll);
+    if (f.twisting)
+        wide_store(c->twist + at, t.twist);
+    return result;
+}
+
 DEM_INLINE void contact_law(const dem_features f, const dem_rows *rows, const dem_contact_job *job, size_t at, size_t g,
                             contact_batch *batch, const bool wall, const bool record)
 {
@@ -354,7 +494,7 @@ DEM_INLINE void contact_law(const dem_features f, const dem_rows *rows, const de
         inverse_mass = wide_load(batch->at[AT_MASS] + g);
         mass = wide_all(1) / inverse_mass;
     }
-    if (f.hertz)
+    if (needs_reduced(f))
         reduced = wide_load(batch->at[AT_REDUCED] + g);
     if (f.young)
         area = wide_load(batch->at[AT_AREA] + g);
@@ -364,37 +504,39 @@ DEM_INLINE void contact_law(const dem_features f, const dem_rows *rows, const de
     wide weight = f.weighted ? wide_load(c->weight + at) : wide_all(1);
     wide3 force = {zero, zero, zero}, spring = force;
     wide slide = zero;
+    wide slide_before = zero, slide_damping = zero;
     contact_loss loss = {zero, zero};
     if (f.friction) {
         wide turn = step * wide_load(batch->at[AT_TURN] + g);
-        spring = (wide3){wide_load(c->spring[0] + at), wide_load(c->spring[1] + at), wide_load(c->spring[2] + at)};
-        spring = spring_turn(spring, n, turn);
+        spring = spring_turn(load3(c->spring, at), n, turn);
         wide3 slip = along3(v, zero - vn, n);
         friction_law t = friction(f, law, &normal, reduced, overlap, vn, mass, spring, slip, step, on);
         force = t.force;
         spring = t.spring;
-        if (record) {
-            slide = law[LAW_SLIDE_STIFFNESS] + law[LAW_SLIDE_RATIO] * normal.stiffness;
-            if (f.mindlin)
-                slide = slide + law[LAW_SLIDE_HERTZ] * normal.radius;
-        } else {
-            wide_store(c->spring[0] + at, spring.x);
-            wide_store(c->spring[1] + at, spring.y);
-            wide_store(c->spring[2] + at, spring.z);
-        }
+        slide = t.stiffness;
+        slide_before = t.old_stiffness;
+        slide_damping = t.damping;
+        if (!record)
+            store3(c->spring, at, spring);
         loss.friction = t.lost;
         if (f.ledger && f.slide_damping) {
-            wide3 was = {wide_load(c->dash[0] + at), wide_load(c->dash[1] + at), wide_load(c->dash[2] + at)};
+            wide3 was = load3(c->dash, at);
             wide3 both = {was.x + t.dash.x, was.y + t.dash.y, was.z + t.dash.z};
             loss.viscous = wide_all(0.5) * step * dot3(both, slip);
-            if (!record) {
-                wide_store(c->dash[0] + at, t.dash.x);
-                wide_store(c->dash[1] + at, t.dash.y);
-                wide_store(c->dash[2] + at, t.dash.z);
-            }
+            if (!record)
+                store3(c->dash, at, t.dash);
         }
     }
-    force = or_zero3(on, along3(force, zero - normal.force, n));
+    wide net = normal.force, pulled = zero;
+    if (adheres(f)) {
+        lens shared = {zero, zero};
+        if (f.sjkr)
+            shared = (lens){wide_load(batch->at[AT_AREA_SHARED] + g), wide_load(batch->at[AT_VOLUME_SHARED] + g)};
+        adhesion_law pull = adhesion(f, law, shared, reduced, overlap);
+        net = net - pull.force;
+        pulled = pull.energy;
+    }
+    force = or_zero3(on, along3(force, zero - net, n));
     if (f.ledger && damped(f)) {
         wide now = wide_or_zero(on, normal.elastic - normal.force), was = wide_load(c->loss + at);
         loss.viscous = loss.viscous + wide_all(0.5) * (was + now) * (vn * step);
@@ -405,34 +547,66 @@ DEM_INLINE void contact_law(const dem_features f, const dem_rows *rows, const de
         force = scale3(force, weight);
         loss = (contact_loss){loss.friction * weight, loss.viscous * weight};
     }
+    dem_contact_record *records = job->records + (at - g - job->begin);
+    if (record)
+        put_records(f, batch, g, &normal, net, pulled, &force, &spring, slide, mass, weight, on, records);
+    wide power = zero;  // of a moving wall
+    if (turns(f)) {
+        turning_state s = {.n = n,
+                           .reduced = reduced,
+                           .overlap = overlap,
+                           .before = wide_fma(vn, step, overlap),
+                           .step = step,
+                           .slide = slide,
+                           .slide_before = slide_before,
+                           .slide_damping = slide_damping};
+        contact_moment m = contact_turning(f, job, at, g, batch, law, &normal, &s, weight, on, wall, record);
+        loss.friction = loss.friction + m.lost;
+        power = m.power;
+    }
     if (record) {
-        dem_contact_record *records = job->records + (at - g - job->begin);
-        put_records(f, batch, g, &normal, &force, &spring, slide, mass, weight, on, records);
-        put_losses(&loss, wall && f.moving ? dot3(force, get3(batch, AT_WALL, g)) : zero, g, records);
+        if (wall && f.moving)
+            power = power + dot3(force, get3(batch, AT_WALL, g));
+        put_losses(&loss, power, g, records);
         return;
     }
-    if (f.ledger && f.friction)
+    if (f.ledger && (f.friction || turns(f)))
         tally_add(job->tally->friction, g, loss.friction);
     if (f.ledger && damped(f))
         tally_add(job->tally->viscous, g, loss.viscous);
+    if (f.roll_bound) {
+        wide bound = law[LAW_ROLL_BOUND] * wide_load(batch->at[AT_RADIUS] + g) * wide_abs(normal.force) * weight;
+        wide_store(batch->at[AT_BOUND] + g, wide_or_zero(on, bound * wide_all(job->kick)));
+    }
     if (f.watch) {
         wide strain = contact_strain(f, law, &normal, mass, wide_all(job->next_step), wall);
         wide_store(batch->at[AT_STRAIN] + g, wide_or_zero(on, strain));
     }
     force = scale3(force, wide_all(job->kick));
     put3(batch, AT_FORCE, g, force);
-    if (wall && f.moving && f.ledger)
-        tally_add(job->tally->work, g, dot3(force, get3(batch, AT_WALL, g)));
+    if (wall && f.moving && f.ledger) {
+        wide work = dot3(force, get3(batch, AT_WALL, g));
+        if (turns(f))
+            work = wide_fma(wide_all(job->kick), power, work);
+        tally_add(job->tally->work, g, work);
+    }
 }
 
+/// `least`, `brisk`: lanes of the body's 1 / least mass and 1 / least moment; `sign`: of its share of the moment.
 DEM_INLINE void scatter(const dem_features f, const dem_rows *rows, const contact_batch *batch, size_t g, int least,
-                        const uint32_t *row, wide3 impulse, wide3 arm)
+                        int brisk, const uint32_t *row, wide3 impulse, wide3 arm, const double sign)
 {
     wide3 moment = cross3(arm, impulse);
-    wide zero = wide_all(0), strain = zero;
+    wide strain = wide_all(0), bound = strain;
+    if (turns(f))
+        moment = along3(moment, wide_all(sign), get3(batch, AT_MOMENT, g));
     if (f.watch)
         strain = wide_load(batch->at[AT_STRAIN] + g) * wide_load(batch->at[least] + g);
-    wide columns[8] = {impulse.x, impulse.y, impulse.z, moment.x, moment.y, moment.z, strain, zero};
+    if (f.watch && turns(f))
+        strain = wide_fma(wide_load(batch->at[AT_TURN_STRAIN] + g), wide_load(batch->at[brisk] + g), strain);
+    if (f.roll_bound)
+        bound = wide_load(batch->at[AT_BOUND] + g);
+    wide columns[8] = {impulse.x, impulse.y, impulse.z, moment.x, moment.y, moment.z, strain, bound};
     rows_add(rows->momentum, row, columns);
 }
 
@@ -460,14 +634,15 @@ DEM_INLINE void contact_batches(const dem_features f, const dem_rows *rows, cons
             continue;
         for (size_t block = 0; block < count; block += DEM_BLOCK_LANES) {
             for (size_t g = block; g < block + DEM_BLOCK_LANES; g += DEM_WIDTH)
-                scatter(f, rows, &batch, g, AT_LEAST_A, c->a + from + g, get3(&batch, AT_FORCE, g),
-                        get3(&batch, AT_A, g));
+                scatter(f, rows, &batch, g, AT_LEAST_A, AT_BRISK_A, c->a + from + g, get3(&batch, AT_FORCE, g),
+                        get3(&batch, AT_A, g), 1);
             if (wall)
                 continue;
             for (size_t g = block; g < block + DEM_BLOCK_LANES; g += DEM_WIDTH) {
                 wide3 force = get3(&batch, AT_FORCE, g);
                 force = (wide3){wide_all(0) - force.x, wide_all(0) - force.y, wide_all(0) - force.z};
-                scatter(f, rows, &batch, g, AT_LEAST_B, c->target + from + g, force, get3(&batch, AT_B, g));
+                scatter(f, rows, &batch, g, AT_LEAST_B, AT_BRISK_B, c->target + from + g, force, get3(&batch, AT_B, g),
+                        -1);
             }
         }
     }

@@ -113,10 +113,12 @@ size_t dem_contact_bytes(const dem_features *f, int form)
 
 dem_contact_history dem_history_get(const dem_contact_columns *c, size_t at)
 {
-    dem_contact_history h = {.loss = c->loss ? c->loss[at] : 0};
+    dem_contact_history h = {.twist = c->twist ? c->twist[at] : 0, .loss = c->loss ? c->loss[at] : 0};
     for (int k = 0; k < 3; k++) {
         h.spring[k] = c->spring[k] ? c->spring[k][at] : 0;
         h.dash[k] = c->dash[k] ? c->dash[k][at] : 0;
+        h.roll[k] = c->roll[k] ? c->roll[k][at] : 0;
+        h.drag[k] = c->drag[k] ? c->drag[k][at] : 0;
     }
     return h;
 }
@@ -128,7 +130,13 @@ void dem_history_put(const dem_contact_columns *c, size_t at, const dem_contact_
             c->spring[k][at] = h->spring[k];
         if (c->dash[k])
             c->dash[k][at] = h->dash[k];
+        if (c->roll[k])
+            c->roll[k][at] = h->roll[k];
+        if (c->drag[k])
+            c->drag[k][at] = h->drag[k];
     }
+    if (c->twist)
+        c->twist[at] = h->twist;
     if (c->loss)
         c->loss[at] = h->loss;
 }

@@ -218,6 +218,21 @@ DEM_INLINE void damp(const dem_motion_job *job, const wide before[8], const wide
     }
 }
 
+/// Rolling resistance that contacts bound (Irazabal, Salazar & Onate 2017): takes what it may of the angular momentum,
+/// at most all of it, so that it never turns a spin round. Returns the impulse.
+DEM_INLINE wide3 hold_spin(wide momentum[8])
+{
+    wide3 spin = {momentum[3], momentum[4], momentum[5]};
+    wide size2 = dot3(spin, spin), zero = wide_all(0);
+    wide part = wide_min(wide_all(1), momentum[7] * wide_rsqrt(size2));
+    wide3 impulse = scale3(spin, zero - wide_or_zero(wide_less(zero, size2), part));
+    momentum[3] = momentum[3] + impulse.x;
+    momentum[4] = momentum[4] + impulse.y;
+    momentum[5] = momentum[5] + impulse.z;
+    momentum[7] = zero;
+    return impulse;
+}
+
 // twice the energy taken out by impulses: against the mean of the velocities before and after
 DEM_INLINE wide taken(const wide3 impulse[2], const wide was[8], const wide now[8])
 {
@@ -238,7 +253,7 @@ DEM_INLINE void note_strained(dem_motion_job *job, size_t i, wide strain)
     }
 }
 
-DEM_INLINE void move_bodies(const dem_rows *rows, dem_motion_job *job, const bool damped)
+DEM_INLINE void move_bodies(const dem_rows *rows, dem_motion_job *job, const bool damped, const bool bounded)
 {
     wide step = wide_all(job->step);
     for (size_t i = job->begin; i < job->end; i += DEM_WIDTH) {
@@ -251,12 +266,16 @@ DEM_INLINE void move_bodies(const dem_rows *rows, dem_motion_job *job, const boo
         wide3 weight = {kick * wide_all(job->gravity[0]), kick * wide_all(job->gravity[1]),
                         kick * wide_all(job->gravity[2])};
         damping d;
+        wide3 held[2] = {{wide_all(0), wide_all(0), wide_all(0)}};
+        if (damped || bounded)
+            rows_load_next(body + 8, DEM_BODY_ROW, was);
         if (damped) {
             wide before[8];
             rows_load_next(job->before + DEM_ROW * i, DEM_ROW, before);
-            rows_load_next(body + 8, DEM_BODY_ROW, was);
             damp(job, before, was, weight, momentum, &d);
         }
+        if (bounded)
+            held[1] = hold_spin(momentum);
         momentum[0] = momentum[0] + weight.x;
         momentum[1] = momentum[1] + weight.y;
         momentum[2] = momentum[2] + weight.z;
@@ -293,6 +312,8 @@ DEM_INLINE void move_bodies(const dem_rows *rows, dem_motion_job *job, const boo
             tally_add(job->tally->local, i, wide_all(0.5) * taken(d.local, was, motion));
             tally_add(job->tally->drag, i, wide_all(0.5) * taken(d.drag, was, motion));
         }
+        if (bounded && job->tally)
+            tally_add(job->tally->rolling, i, wide_all(0.5) * taken(held, was, motion));
         rows_store_next(body, DEM_BODY_ROW, pose);
         rows_store_next(body + 8, DEM_BODY_ROW, motion);
         rows_store_next(rows->momentum + DEM_ROW * i, DEM_ROW, momentum);

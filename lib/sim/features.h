@@ -16,6 +16,13 @@
     X(friction, "a tangential spring with a cap, remembered by each contact")                                          \
     X(mindlin, "a tangential stiffness that grows with the contact radius")                                            \
     X(slide_damping, "tangential dashpots")                                                                            \
+    X(rolling, "a rolling spring with a cap, remembered by each contact")                                              \
+    X(roll_constant, "a constant moment against rolling")                                                              \
+    X(roll_bound, "a bound that contacts set to the spin of a body")                                                   \
+    X(twisting, "a twisting spring with a cap, remembered by each contact")                                            \
+    X(twist_constant, "a constant moment against twisting")                                                            \
+    X(sjkr, "cohesion by the area of the overlap")                                                                     \
+    X(dmt, "a constant adhesion")                                                                                      \
     X(offset, "spheres away from the centre of their body")                                                            \
     X(scaled, "bodies that scale their shape")                                                                         \
     X(periodic, "images across periodic sides")                                                                        \
@@ -31,7 +38,13 @@ typedef struct dem_features {
 #undef FIELD
 } dem_features;
 
-/// The numbers of one law, a row of 16.
+/// Whether contacts have moments of their own.
+static inline bool features_turning(const dem_features *f)
+{
+    return f->rolling || f->roll_constant || f->twisting || f->twist_constant;
+}
+
+/// The numbers of one law, a row of 32.
 typedef enum dem_law_slot {
     LAW_STIFFNESS,        ///< k_n [N/m]
     LAW_YOUNG,            ///< pi E: k_n = pi E R_min^2 / (R_i + R_j) [Pa]
@@ -47,7 +60,19 @@ typedef enum dem_law_slot {
     LAW_FRICTION,         ///< coefficient [-]
     LAW_KEEP_LEAST,       ///< bounds of what happens to the spring's length when k_t changes, so that the force stays
     LAW_KEEP_MOST,        ///< (0 to INFINITY), at most stays (0 to 1), or k_t does not change (1 to 1) [-]
-    LAW_SLOTS = 16
+    LAW_MORE = 16,  ///< from here on only with some of the features above
+    LAW_ROLL_RATIO = LAW_MORE,  ///< k_r = this k_n R*^2 [-]
+    LAW_ROLL_STIFFNESS,         ///< k_r that is given [N m/rad]
+    LAW_ROLL_CAP,               ///< coefficient: the spring holds this R* F_n [-]
+    LAW_ROLL_ZETA,              ///< z: c_r = z sqrt(k_r I_r), 2 damping ratios [-]
+    LAW_ROLL_CONSTANT,          ///< coefficient of the constant moment: this R* F_n [-]
+    LAW_ROLL_BOUND,             ///< coefficient of the bound: this R_min F_n [-]
+    LAW_TWIST_RATIO,            ///< k_tw = this k_t a^2, c_tw = this c_t a^2 [-]
+    LAW_TWIST_CAP,              ///< the spring holds this a F_n [-]
+    LAW_TWIST_CONSTANT,         ///< coefficient of the constant moment: this R* F_n [-]
+    LAW_ENERGY_DENSITY,         ///< of the overlap's area: pull by this A [Pa]
+    LAW_ADHESION,               ///< 2 pi w: pull by this R* [N/m]
+    LAW_SLOTS = 32
 } dem_law_slot;
 
 #endif

@@ -77,10 +77,13 @@ static const dem_contact_instance instances[] = {
 
 static void move(const dem_rows *rows, dem_motion_job *job)
 {
-    if (job->local > 0 || job->viscous > 0)
-        move_bodies(rows, job, true);
+    bool damped = job->local > 0 || job->viscous > 0;
+    if (job->bounded)
+        move_bodies(rows, job, damped, true);
+    else if (damped)
+        move_bodies(rows, job, true, false);
     else
-        move_bodies(rows, job, false);
+        move_bodies(rows, job, false, false);
 }
 
 static void cull(dem_cull_job *job)

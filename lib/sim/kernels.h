@@ -3,7 +3,8 @@
 /// Bodies stand in rows of 8 doubles on 64-byte boundaries:
 ///   pose     x y z  q0 q1 q2 q3  scale          two rows side by side, 16 doubles a body
 ///   motion   vx vy vz  wx wy wz  1/m  1/m_least: the least mass that a contact can see
-///   momentum P x y z  L x y z  strain -          half a step before the pose; axes of space. strain: see timestep.h
+///   momentum P x y z  L x y z  strain bound      half a step before the pose; axes of space. strain: see timestep.h;
+///                                                bound: of what may be taken off L (rolling "bounded")
 ///   inertia  1/m  1/I1 1/I2 1/I3  reach  m  1/m_least  isotropic
 /// `reach` bounds the distance of a surface point from the centre where it counts for motion: 0 for one sphere at the
 /// centre.
@@ -35,9 +36,10 @@ typedef struct dem_tally {
 /// What one contact does, for measuring.
 typedef struct dem_contact_record {
     double normal[3], point_a[3], point_b[3];  ///< normal out of a; contact point from the centres [m]
-    double overlap, normal_force, elastic_normal, elastic_slide, reduced_mass, stiffness, slide_stiffness;
+    double overlap, normal_force, elastic_normal, elastic_slide, elastic_turn, reduced_mass, stiffness, slide_stiffness;
     double force[3];                     ///< on a [N]
     double lost_friction, lost_viscous;  ///< dissipated since the last step [J] (ledger)
+    double turning[3];                   ///< moment on a beside that of the force [N m]
     double wall_power;                   ///< of a moving wall [W]
     double radius_a, radius_b;
     bool touches;
@@ -52,6 +54,9 @@ typedef struct dem_contact_columns {
     uint32_t *law;                  ///< row of the law (mixed)
     double *spring[3];              ///< tangential spring [m] (friction)
     double *dash[3];                ///< force of the tangential dashpot in the last step [N] (ledger, slide_damping)
+    double *roll[3];                ///< angle of the rolling spring [rad] (rolling)
+    double *twist;                  ///< angle of the twisting spring [rad] (twisting)
+    double *drag[3];                ///< moment not of the springs in the last step [N m] (ledger, with any of these)
     double *loss;                   ///< elastic force that was not passed on in the last step [N] (ledger, damped)
     double *weight;                 ///< share of the force that counts [-] (weighted)
     double *geometry[7];            ///< of mesh walls: normal, overlap, point from the body's centre
@@ -80,7 +85,7 @@ typedef struct dem_contact_instance {
 
 /// Energy that the motion of bodies has taken out and put in, in lanes [J].
 typedef struct dem_motion_tally {
-    double local[DEM_BLOCK_LANES], drag[DEM_BLOCK_LANES];
+    double local[DEM_BLOCK_LANES], drag[DEM_BLOCK_LANES], rolling[DEM_BLOCK_LANES];
 } dem_motion_tally;
 
 /// A body whose contacts strain the time step more than it was allowed, see timestep.h.
@@ -103,6 +108,7 @@ typedef struct dem_motion_job {
     const double *before;   ///< [8 a body] momentum before the contacts (local damping)
     double local, viscous;  ///< damping: Cundall's alpha [-], c [1/s]
     bool vector, exclude_gravity;
+    bool bounded;  ///< contacts set bounds to the spin
     dem_motion_tally *tally;  ///< ledger; NULL: none
     uint32_t *asked;          ///< bodies beyond their limit, or not finite
     size_t asked_count;

@@ -39,11 +39,15 @@ static dem_status fill_normal(const dem_scene *scene, const dem_pair_law *law, d
 {
     const dem_material *a = &scene->materials[law->materials[0]], *b = &scene->materials[law->materials[1]];
     double young, shear;
-    if (law->normal == DEM_NORMAL_HERTZ) {
+    if (dem_law_of_hertz(law)) {
         if (!moduli(a, b, &young, &shear))
             return refuse(scene, law, "is of Hertz; give both materials \"young\" and \"poisson\"", error);
         row[LAW_HERTZ] = 2 * young;
         needs->hertz = true;
+        if (law->normal == DEM_NORMAL_DMT) {
+            row[LAW_ADHESION] = 2 * DEM_PI * law->work_of_adhesion;
+            needs->dmt = true;
+        }
     } else if (law->stiffness > 0) {
         row[LAW_STIFFNESS] = law->stiffness;
         needs->linear = true;
@@ -69,7 +73,7 @@ static void fill_damping(const dem_pair_law *law, double *row, dem_features *nee
     } else if (law->damping == DEM_DAMPING_RESTITUTION && law->restitution < 1) {
         zeta = cut ? dem_damping_ratio_cut(fmax(law->restitution, LEAST_RESTITUTION))
                    : dem_damping_ratio(law->restitution);
-        row[LAW_ZETA] = 2 * zeta * (law->normal == DEM_NORMAL_HERTZ ? sqrt(5.0 / 6) : 1);
+        row[LAW_ZETA] = 2 * zeta * (dem_law_of_hertz(law) ? sqrt(5.0 / 6) : 1);
         needs->restitution = true;
     } else
         return;
@@ -95,7 +99,7 @@ static dem_status fill_friction(const dem_scene *scene, const dem_pair_law *law,
     row[LAW_FRICTION] = law->friction_coefficient;
     if (law->friction == DEM_FRICTION_MINDLIN) {
         double young, shear;
-        if (law->normal != DEM_NORMAL_HERTZ ||
+        if (!dem_law_of_hertz(law) ||
             !moduli(&scene->materials[law->materials[0]], &scene->materials[law->materials[1]], &young, &shear))
             return refuse(scene, law,
                           "has Mindlin's friction, which needs the normal law of Hertz; take \"hertz\" with it, or "
@@ -104,7 +108,7 @@ static dem_status fill_friction(const dem_scene *scene, const dem_pair_law *law,
         grow_with_radius(law, row, 8 * shear, needs);
     } else if (law->tangential_stiffness > 0)
         row[LAW_SLIDE_STIFFNESS] = law->tangential_stiffness;
-    else if (law->normal == DEM_NORMAL_HERTZ)
+    else if (dem_law_of_hertz(law))
         grow_with_radius(law, row, law->stiffness_ratio * row[LAW_HERTZ], needs);
     else
         row[LAW_SLIDE_RATIO] = law->stiffness_ratio;
@@ -116,6 +120,52 @@ static dem_status fill_friction(const dem_scene *scene, const dem_pair_law *law,
         needs->slide_damping = true;
     }
     return DEM_OK;
+}
+
+static void fill_rolling(const dem_pair_law *law, double *row, dem_features *needs)
+{
+    double mu = law->rolling_coefficient;
+    if (law->rolling == DEM_ROLLING_NONE || !(mu > 0))
+        return;
+    if (law->rolling == DEM_ROLLING_BOUNDED) {
+        row[LAW_ROLL_BOUND] = mu;
+        needs->roll_bound = true;
+    } else if (law->rolling == DEM_ROLLING_CONSTANT) {
+        row[LAW_ROLL_CONSTANT] = mu;
+        needs->roll_constant = true;
+    } else {
+        if (law->rolling_stiffness > 0)
+            row[LAW_ROLL_STIFFNESS] = law->rolling_stiffness;
+        else
+            row[LAW_ROLL_RATIO] = 2.25 * mu * mu;
+        row[LAW_ROLL_CAP] = mu;
+        row[LAW_ROLL_ZETA] = 2 * law->rolling_damping;
+        needs->rolling = true;
+    }
+}
+
+static dem_status fill_twisting(const dem_scene *scene, const dem_pair_law *law, double *row, dem_features *needs,
+                                dem_error *error)
+{
+    if (law->twisting == DEM_TWISTING_CONSTANT && law->twisting_coefficient > 0) {
+        row[LAW_TWIST_CONSTANT] = law->twisting_coefficient;
+        needs->twist_constant = true;
+    } else if (law->twisting == DEM_TWISTING_MARSHALL) {
+        if (law->friction == DEM_FRICTION_NONE || !(law->friction_coefficient > 0))
+            return refuse(scene, law, "has Marshall's twisting, which needs friction; add \"friction\"", error);
+        row[LAW_TWIST_RATIO] = 0.5;
+        row[LAW_TWIST_CAP] = 2.0 / 3 * law->friction_coefficient;
+        needs->twisting = true;
+    }
+    return DEM_OK;
+}
+
+static void fill_cohesion(const dem_pair_law *law, double *row, dem_features *needs)
+{
+    if (law->cohesion == DEM_COHESION_SJKR && law->energy_density > 0) {
+        row[LAW_ENERGY_DENSITY] = law->energy_density;
+        needs->sjkr = true;
+    }
 }
 
 static uint32_t row_equal_to(dem_laws *laws, const double row[LAW_SLOTS])
@@ -140,6 +190,9 @@ static dem_status add_law(const dem_scene *scene, const dem_pair_law *law, dem_l
     DEM_TRY(fill_normal(scene, law, row, needs, error));
     fill_damping(law, row, needs);
     DEM_TRY(fill_friction(scene, law, row, needs, error));
+    fill_rolling(law, row, needs);
+    DEM_TRY(fill_twisting(scene, law, row, needs, error));
+    fill_cohesion(law, row, needs);
     if (row[LAW_RATE] > 0 || row[LAW_ZETA] > 0 || row[LAW_SLIDE_RATE] > 0) {
         bool local = law->effective_mass == DEM_MASS_LOCAL;
         if (laws->damped && needs->local_mass != local)

@@ -33,6 +33,12 @@ static inline double law_stiffness(const double *law, double area_length, double
     return law[LAW_STIFFNESS] + law[LAW_YOUNG] * area_length + law[LAW_HERTZ] * radius;
 }
 
+/// Stiffness of its rolling spring [N m/rad]; `reduced`: R* [m], `normal` its normal stiffness.
+static inline double law_roll_stiffness(const double *law, double reduced, double normal)
+{
+    return law[LAW_ROLL_RATIO] * reduced * reduced * normal + law[LAW_ROLL_STIFFNESS];
+}
+
 /// Its tangential stiffness [N/m].
 static inline double law_slide_stiffness(const double *law, double area_length, double radius)
 {

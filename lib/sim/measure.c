@@ -88,10 +88,10 @@ typedef struct tour {
     bool failed;
 } tour;
 
-static void add_to_body(dem_views *v, uint32_t i, dem_vec3 force, dem_vec3 arm)
+static void add_to_body(dem_views *v, uint32_t i, dem_vec3 force, dem_vec3 arm, dem_vec3 turning)
 {
     v->force[i] = v3_add(v->force[i], force);
-    v->moment[i] = v3_add(v->moment[i], v3_cross(arm, force));
+    v->moment[i] = v3_add(v->moment[i], v3_add(v3_cross(arm, force), turning));
 }
 
 static dem_vec3 from_array(const double a[3])
@@ -114,13 +114,13 @@ static void count_coordination(tour *t, dem_views *v, uint32_t a, uint32_t other
         v->coordination[b]++;
 }
 
-static void note_wall(dem_world *w, uint32_t wall, dem_vec3 force, dem_vec3 point)
+static void note_wall(dem_world *w, uint32_t wall, dem_vec3 force, dem_vec3 point, dem_vec3 turning)
 {
     dem_wall_view *view = &w->views.walls[wall];
     const dem_wall *about = &w->walls.items[wall];
     dem_vec3 through = v3_add(about->position, quat_rotate(about->orientation, about->through));
     view->force = v3_sub(view->force, force);
-    view->moment = v3_sub(view->moment, v3_cross(v3_sub(point, through), force));
+    view->moment = v3_sub(view->moment, v3_add(v3_cross(v3_sub(point, through), force), turning));
     view->contacts++;
 }
 
@@ -139,18 +139,19 @@ static void visit_contact(void *user, dem_world *w, int form, const dem_contact_
     dem_vec3 force = from_array(r->force), arm = from_array(r->point_a), n = from_array(r->normal);
     dem_vec3 point = v3_add(body_position(&w->bodies, item->a), arm);
     double radius = w->templates.spheres[item->sphere_a][3] * body_scale(&w->bodies, item->a);
-    add_to_body(v, a, force, arm);
+    dem_vec3 turning = from_array(r->turning);
+    add_to_body(v, a, force, arm, turning);
     if (wall) {
         f->wall_contacts++;
-        note_wall(w, item->sphere_b, force, point);
+        note_wall(w, item->sphere_b, force, point, turning);
     } else {
         f->contacts++;
         radius = fmin(radius, w->templates.spheres[item->sphere_b][3] * body_scale(&w->bodies, item->b));
-        add_to_body(v, b, v3_scale(force, -1), from_array(r->point_b));
+        add_to_body(v, b, v3_scale(force, -1), from_array(r->point_b), v3_scale(turning, -1));
     }
     count_coordination(t, v, a, wall ? ~item->sphere_b : b, b);  // walls must not look like bodies
     f->overlap_ratio = fmax(f->overlap_ratio, r->overlap / radius);
-    v->elastic += r->elastic_normal + r->elastic_slide;
+    v->elastic += r->elastic_normal + r->elastic_slide + r->elastic_turn;
     if (!dem_grow(&v->contacts, &v->contact_capacity, v->contact_count, sizeof *v->contacts)) {
         t->failed = true;
         return;
@@ -320,6 +321,7 @@ dem_energy dem_ledger(const dem_world *w)
     for (size_t i = 0; i < w->segment_count; i++) {
         e.local += lanes(w->motion_tallies[i].local);
         e.drag += lanes(w->motion_tallies[i].drag);
+        e.friction += lanes(w->motion_tallies[i].rolling);
     }
     return e;
 }
@@ -346,7 +348,7 @@ static void balance(dem_world *w)
     w->views.most_energy = fmax(w->views.most_energy, most);
     double off = now + gone - e->start;
     e->error = NAN;
-    if (w->ledger || !(w->laws.damped || w->features.friction))
+    if (w->ledger || !(w->laws.damped || w->features.friction || features_turning(&w->features)))
         e->error = w->views.most_energy > 0 ? off / w->views.most_energy : 0;
 }
 

@@ -32,6 +32,8 @@ dem_pair_law dem_pair_law_defaults(void)
         .stiffness_ratio = 2.0 / 7,
         .tangential_rate = NAN,
         .rescale = true,
+        .rolling_stiffness = NAN,
+        .rolling_damping = 0.3,
     };
 }
 
@@ -64,7 +66,7 @@ double dem_scene_safety(const dem_scene *scene)
         return scene->time.safety;
     for (size_t i = 0; i < scene->law_count; i++) {
         const dem_pair_law *law = &scene->laws[i];
-        if (law->normal == DEM_NORMAL_HERTZ && dem_scene_can_meet(scene, law->materials[0], law->materials[1]))
+        if (dem_law_of_hertz(law) && dem_scene_can_meet(scene, law->materials[0], law->materials[1]))
             return SAFETY_HERTZ;
     }
     return SAFETY;

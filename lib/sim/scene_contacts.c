@@ -60,11 +60,11 @@ static dem_status read_restitution(dem_scene_reader *r, const dem_scene_value *v
 }
 
 static const dem_choice normal_laws[] = {{"linear", DEM_NORMAL_LINEAR}, {"hertz", DEM_NORMAL_HERTZ},
-                                         {"jkr", DEM_NOT_BUILT},        {"dmt", DEM_NOT_BUILT},
+                                         {"dmt", DEM_NORMAL_DMT},       {"jkr", DEM_NOT_BUILT},
                                          {"plugin", DEM_NOT_BUILT},     {NULL, 0}};
 static const dem_choice tails[] = {{"cut_corrected", DEM_TAIL_CUT}, {"tension_allowed", DEM_TAIL_TENSION}, {NULL, 0}};
 
-enum { NORMAL_LAW, NORMAL_STIFFNESS, NORMAL_STIFFNESS_FROM, NORMAL_RESTITUTION, NORMAL_MODE, NORMAL_RATE };
+enum { NORMAL_LAW, NORMAL_STIFFNESS, NORMAL_STIFFNESS_FROM, NORMAL_RESTITUTION, NORMAL_MODE, NORMAL_RATE, NORMAL_WORK };
 static const dem_field normal_table[] = {
     [NORMAL_LAW] = {"law", dem_field_choice, .at = offsetof(dem_pair_law, normal), .choices = normal_laws},
     [NORMAL_STIFFNESS] = {"stiffness", dem_field_quantity, .at = offsetof(dem_pair_law, stiffness),
@@ -75,8 +75,9 @@ static const dem_field normal_table[] = {
     [NORMAL_MODE] = {"restitution_mode", dem_field_choice, .at = offsetof(dem_pair_law, tail), .choices = tails},
     [NORMAL_RATE] = {"damping_rate", dem_field_quantity, .at = offsetof(dem_pair_law, damping_rate),
                      .dimension = DEM_DIMENSION_RATE, .range = DEM_RANGE_FROM_0},
+    [NORMAL_WORK] = {"work_of_adhesion", dem_field_quantity, .at = offsetof(dem_pair_law, work_of_adhesion),
+                     .dimension = DEM_DIMENSION_STIFFNESS, .range = DEM_RANGE_FROM_0},
     DEM_UNBUILT("plugin"),
-    DEM_UNBUILT("work_of_adhesion"),
 };
 static const dem_fields normal_fields = DEM_FIELDS(normal_table);
 
@@ -102,10 +103,14 @@ static dem_status read_normal(dem_scene_reader *r, const dem_scene_value *v, con
     if (restitution && rate)
         return dem_scene_refuse(r, v, "give one of them", "has both \"restitution\" and \"damping_rate\"");
     law->damping = restitution ? DEM_DAMPING_RESTITUTION : rate ? DEM_DAMPING_RATE : DEM_DAMPING_NONE;
-    if (law->normal == DEM_NORMAL_HERTZ) {
+    bool dmt = law->normal == DEM_NORMAL_DMT;
+    if (dmt != dem_given(given, NORMAL_WORK))
+        return dmt ? dem_scene_refuse(r, v, "add it", "the law dmt needs \"work_of_adhesion\"")
+                   : dem_scene_refuse(r, v, "use the law dmt with it", "only the law dmt has \"work_of_adhesion\"");
+    if (dem_law_of_hertz(law)) {
         if (stiffness || from)
             return dem_scene_refuse(r, v, "leave it out, or use the linear law",
-                                    "the law hertz has no \"%s\", it follows from the materials",
+                                    "the law %s has no \"%s\", it follows from the materials", dmt ? "dmt" : "hertz",
                                     stiffness ? "stiffness" : "stiffness_from");
         return check_elastic(r, v, law, true);
     }
@@ -150,10 +155,10 @@ static dem_status read_friction(dem_scene_reader *r, const dem_scene_value *v, c
     uint64_t given;
     if (dem_json_is_null(v->json))
         return DEM_OK;
-    law->friction = law->normal == DEM_NORMAL_HERTZ ? DEM_FRICTION_MINDLIN : DEM_FRICTION_LINEAR;
+    law->friction = dem_law_of_hertz(law) ? DEM_FRICTION_MINDLIN : DEM_FRICTION_LINEAR;
     DEM_TRY(dem_fields_read(r, v, field->fields, law, &given));
     bool mindlin = law->friction == DEM_FRICTION_MINDLIN;
-    if (mindlin && law->normal != DEM_NORMAL_HERTZ)
+    if (mindlin && !dem_law_of_hertz(law))
         return dem_scene_refuse(r, v, "use the law linear, or hertz for the normal force",
                                 "the law mindlin needs the normal law hertz");
     if (dem_given(given, FRICTION_STIFFNESS) && dem_given(given, FRICTION_STIFFNESS_RATIO))
@@ -166,6 +171,79 @@ static dem_status read_friction(dem_scene_reader *r, const dem_scene_value *v, c
     if (!mindlin && dem_given(given, FRICTION_RESCALE))
         return dem_scene_refuse(r, v, "leave it out", "the law linear has no \"rescale\"");
     return DEM_OK;
+}
+
+// ---- rolling, twisting, cohesion
+
+static const dem_choice rolling_laws[] = {
+    {"bounded", DEM_ROLLING_BOUNDED}, {"epsd", DEM_ROLLING_EPSD}, {"constant", DEM_ROLLING_CONSTANT}, {NULL, 0}};
+
+enum { ROLLING_LAW, ROLLING_COEFFICIENT, ROLLING_STIFFNESS, ROLLING_DAMPING };
+static const dem_field rolling_table[] = {
+    [ROLLING_LAW] = {"law", dem_field_choice, .at = offsetof(dem_pair_law, rolling), .needed = true,
+                     .choices = rolling_laws},
+    [ROLLING_COEFFICIENT] = {"coefficient", dem_field_quantity, .at = offsetof(dem_pair_law, rolling_coefficient), true,
+                             DEM_DIMENSION_NONE, DEM_RANGE_FROM_0},
+    [ROLLING_STIFFNESS] = {"stiffness", dem_field_quantity, .at = offsetof(dem_pair_law, rolling_stiffness),
+                           .dimension = DEM_DIMENSION_NONE, .range = DEM_RANGE_POSITIVE},
+    [ROLLING_DAMPING] = {"damping", dem_field_quantity, .at = offsetof(dem_pair_law, rolling_damping),
+                         .dimension = DEM_DIMENSION_NONE, .range = DEM_RANGE_FROM_0},
+};
+static const dem_fields rolling_fields = DEM_FIELDS(rolling_table);
+
+// null: none
+static dem_status read_rolling(dem_scene_reader *r, const dem_scene_value *v, const dem_field *field, void *into)
+{
+    dem_pair_law *law = into;
+    uint64_t given;
+    if (dem_json_is_null(v->json))
+        return DEM_OK;
+    DEM_TRY(dem_fields_read(r, v, field->fields, law, &given));
+    for (int i = ROLLING_STIFFNESS; i <= ROLLING_DAMPING; i++)
+        if (law->rolling != DEM_ROLLING_EPSD && dem_given(given, i))
+            return dem_scene_refuse(r, v, "leave it out", "only the law epsd has \"%s\"", rolling_table[i].name);
+    return DEM_OK;
+}
+
+static const dem_choice twisting_laws[] = {
+    {"marshall", DEM_TWISTING_MARSHALL}, {"constant", DEM_TWISTING_CONSTANT}, {NULL, 0}};
+
+enum { TWISTING_LAW, TWISTING_COEFFICIENT };
+static const dem_field twisting_table[] = {
+    [TWISTING_LAW] = {"law", dem_field_choice, .at = offsetof(dem_pair_law, twisting), .needed = true,
+                      .choices = twisting_laws},
+    [TWISTING_COEFFICIENT] = {"coefficient", dem_field_quantity, .at = offsetof(dem_pair_law, twisting_coefficient),
+                              .dimension = DEM_DIMENSION_NONE, .range = DEM_RANGE_FROM_0},
+};
+static const dem_fields twisting_fields = DEM_FIELDS(twisting_table);
+
+static dem_status read_twisting(dem_scene_reader *r, const dem_scene_value *v, const dem_field *field, void *into)
+{
+    dem_pair_law *law = into;
+    uint64_t given;
+    if (dem_json_is_null(v->json))
+        return DEM_OK;
+    DEM_TRY(dem_fields_read(r, v, field->fields, law, &given));
+    bool constant = law->twisting == DEM_TWISTING_CONSTANT;
+    if (constant == dem_given(given, TWISTING_COEFFICIENT))
+        return DEM_OK;
+    return constant ? dem_scene_refuse(r, v, "add it", "the law constant needs \"coefficient\"")
+                    : dem_scene_refuse(r, v, "leave it out", "the law marshall takes the coefficient of the friction");
+}
+
+static const dem_choice cohesion_laws[] = {{"sjkr", DEM_COHESION_SJKR}, {"breakable", DEM_NOT_BUILT}, {NULL, 0}};
+static const dem_field cohesion_table[] = {
+    {"law", dem_field_choice, .at = offsetof(dem_pair_law, cohesion), .needed = true, .choices = cohesion_laws},
+    {"energy_density", dem_field_quantity, .at = offsetof(dem_pair_law, energy_density), true, DEM_DIMENSION_PRESSURE,
+     DEM_RANGE_FROM_0},
+    DEM_UNBUILT("tension"),
+    DEM_UNBUILT("shear"),
+};
+static const dem_fields cohesion_fields = DEM_FIELDS(cohesion_table);
+
+static dem_status read_cohesion(dem_scene_reader *r, const dem_scene_value *v, const dem_field *field, void *into)
+{
+    return dem_json_is_null(v->json) ? DEM_OK : dem_fields_read(r, v, field->fields, into, NULL);
 }
 
 // ---- contacts
@@ -188,9 +266,9 @@ static const dem_field contact_table[] = {
     {"effective_mass", dem_field_choice, .at = offsetof(dem_pair_law, effective_mass), .choices = effective_masses},
     {"normal", read_normal, .needed = true, .fields = &normal_fields},
     {"friction", read_friction, .fields = &friction_fields},
-    DEM_UNBUILT("rolling"),
-    DEM_UNBUILT("twisting"),
-    DEM_UNBUILT("cohesion"),
+    {"rolling", read_rolling, .fields = &rolling_fields},
+    {"twisting", read_twisting, .fields = &twisting_fields},
+    {"cohesion", read_cohesion, .fields = &cohesion_fields},
 };
 const dem_fields dem_contact_fields = DEM_FIELDS(contact_table);
 

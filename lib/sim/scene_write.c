@@ -87,8 +87,12 @@ static void put_materials(dem_json_writer *w, const dem_scene *scene)
 static void put_normal(dem_json_writer *w, const dem_pair_law *law)
 {
     dem_json_open_object(w, "normal");
-    bool hertz = law->normal == DEM_NORMAL_HERTZ;
-    dem_json_put_string(w, "law", hertz ? "hertz" : "linear");
+    static const char *const names[] = {
+        [DEM_NORMAL_LINEAR] = "linear", [DEM_NORMAL_HERTZ] = "hertz", [DEM_NORMAL_DMT] = "dmt"};
+    bool hertz = dem_law_of_hertz(law);
+    dem_json_put_string(w, "law", names[law->normal]);
+    if (law->normal == DEM_NORMAL_DMT)
+        dem_json_put_number(w, "work_of_adhesion", law->work_of_adhesion);
     if (!hertz && law->stiffness > 0)
         dem_json_put_number(w, "stiffness", law->stiffness);
     else if (!hertz)
@@ -121,6 +125,38 @@ static void put_friction(dem_json_writer *w, const dem_pair_law *law)
     dem_json_close(w, '}');
 }
 
+// what a scene does not name is left out
+static void put_moments(dem_json_writer *w, const dem_pair_law *law)
+{
+    static const char *const rolling[] = {[DEM_ROLLING_BOUNDED] = "bounded",
+                                          [DEM_ROLLING_EPSD] = "epsd",
+                                          [DEM_ROLLING_CONSTANT] = "constant"};
+    if (law->rolling != DEM_ROLLING_NONE) {
+        dem_json_open_object(w, "rolling");
+        dem_json_put_string(w, "law", rolling[law->rolling]);
+        dem_json_put_number(w, "coefficient", law->rolling_coefficient);
+        if (law->rolling == DEM_ROLLING_EPSD) {
+            put_known(w, "stiffness", law->rolling_stiffness);
+            dem_json_put_number(w, "damping", law->rolling_damping);
+        }
+        dem_json_close(w, '}');
+    }
+    if (law->twisting != DEM_TWISTING_NONE) {
+        bool constant = law->twisting == DEM_TWISTING_CONSTANT;
+        dem_json_open_object(w, "twisting");
+        dem_json_put_string(w, "law", constant ? "constant" : "marshall");
+        if (constant)
+            dem_json_put_number(w, "coefficient", law->twisting_coefficient);
+        dem_json_close(w, '}');
+    }
+    if (law->cohesion != DEM_COHESION_NONE) {
+        dem_json_open_object(w, "cohesion");
+        dem_json_put_string(w, "law", "sjkr");
+        dem_json_put_number(w, "energy_density", law->energy_density);
+        dem_json_close(w, '}');
+    }
+}
+
 static void put_contacts(dem_json_writer *w, const dem_scene *scene)
 {
     dem_json_open_array(w, "contacts", true);
@@ -134,6 +170,7 @@ static void put_contacts(dem_json_writer *w, const dem_scene *scene)
         dem_json_put_string(w, "effective_mass", law->effective_mass == DEM_MASS_BODY ? "body" : "local");
         put_normal(w, law);
         put_friction(w, law);
+        put_moments(w, law);
         dem_json_close(w, '}');
     }
     dem_json_close(w, ']');

@@ -82,6 +82,25 @@ static void add_stiffness(const dem_world *w, double a[6][6], size_t row, dem_ve
     }
 }
 
+// the same for turning: k_tw n n^T + k_r (1 - n n^T)
+static void add_turning(const dem_world *w, double a[6][6], size_t row, dem_vec3 n, double twist, double roll)
+{
+    const double *inertia = w->bodies.inertia + DEM_ROW * row;
+    dem_vec3 own = quat_unrotate(body_orientation(&w->bodies, row), n);
+    for (int i = 0; i < 3; i++)
+        for (int j = 0; j < 3; j++)
+            a[3 + i][3 + j] += ((i == j ? roll : 0) + (twist - roll) * v3_get(own, i) * v3_get(own, j)) *
+                               sqrt(inertia[1 + i] * inertia[1 + j]);
+}
+
+// 1 / (I + m r^2), as the kernels take it
+static double inverse_rolling(const dem_world *w, size_t row, double radius)
+{
+    const double *inertia = w->bodies.inertia + DEM_ROW * row;
+    double mean = (inertia[1] + inertia[2] + inertia[3]) / 3;
+    return inertia[0] * mean / (inertia[0] + radius * radius * mean);
+}
+
 // 1 / mass that a contact at `arm` sees of one body
 static double inverse_mass(const dem_world *w, size_t row, dem_vec3 arm, dem_vec3 n)
 {
@@ -103,11 +122,22 @@ static void add_contact(const dem_world *w, body_problem *p, const dem_touch *t,
     double radius = law[LAW_HERTZ] > 0 ? sqrt(t->reduced * larger(t->overlap, 0)) : 0, times = wall ? 1 : 2;
     double kn = law_stiffness(law, t->area_length, radius), kt = law_slide_stiffness(law, t->area_length, radius);
     add_stiffness(w, p->stiffness, row[0], arm[0], t->normal, times * kn, times * kt);
-    if (!w->laws.damped)
+    double patch2 = t->reduced * larger(t->overlap, 0), roll = law_roll_stiffness(law, t->reduced, kn);
+    double twist = law[LAW_TWIST_RATIO] * kt * patch2;
+    if (roll + twist > 0)
+        add_turning(w, p->stiffness, row[0], t->normal, times * twist, times * roll);
+    if (!w->laws.damped && !(roll > 0))
         return;
     double cn = law[LAW_RATE] * mass + law[LAW_ZETA] * sqrt(kn * mass);
     double ct = law[LAW_SLIDE_RATE] * mass + law[LAW_SLIDE_ZETA] * sqrt(kt * mass);
     add_stiffness(w, p->damping, row[0], arm[0], t->normal, times * cn, times * ct);
+    if (roll + twist > 0) {
+        double inverse = inverse_rolling(w, row[0], t->radius[0]);
+        if (!wall)
+            inverse += inverse_rolling(w, row[1], t->radius[1]);
+        double rolling = law[LAW_ROLL_ZETA] * sqrt(roll / inverse), twisting = law[LAW_TWIST_RATIO] * ct * patch2;
+        add_turning(w, p->damping, row[0], t->normal, times * twisting, times * rolling);
+    }
 }
 
 static const double *law_of(const dem_world *w, const dem_contact_columns *c, size_t at)
@@ -161,7 +191,8 @@ static dem_step_bound body_bound(const dem_world *w, size_t row, bool listed)
     memset(&p, 0, sizeof p);
     add_pairs(w, row, listed, &p);
     add_walls(w, row, listed, &p);
-    double k = dem_largest_eigenvalue6(p.stiffness), c = w->laws.damped ? dem_largest_eigenvalue6(p.damping) : 0;
+    double k = dem_largest_eigenvalue6(p.stiffness),
+           c = w->laws.damped || w->features.rolling ? dem_largest_eigenvalue6(p.damping) : 0;
     return (dem_step_bound){k, c, limit_of(k, c), row};
 }
 

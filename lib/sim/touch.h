@@ -10,6 +10,7 @@ typedef struct dem_touch {
     dem_vec3 normal;     ///< unit, out of the first body
     double overlap;      ///< negative: a gap [m]
     double reduced;      ///< R* [m]
+    double radius[2];    ///< of the spheres [m]; of walls the first
     double area_length;  ///< R_min^2 / (R_i + R_j), or R [m]
     dem_vec3 shift;      ///< of the second body's image [m]
 } dem_touch;

@@ -58,7 +58,7 @@ static void set_features(dem_world *w, const dem_body_def *defs, size_t count)
     dem_features *f = &w->features;
     *f = w->laws.needs;
     f->watch = !(w->time_def.step > 0);
-    f->ledger = w->ledger && (w->laws.damped || f->friction || w->walls.move);
+    f->ledger = w->ledger && (w->laws.damped || f->friction || features_turning(f) || w->walls.move);
     f->periodic = w->periodic;
     f->moving = w->walls.move;
     f->weighted = w->multiple != DEM_MULTIPLE_SUM;
@@ -268,7 +268,8 @@ static void motion_pass(dem_world *w, size_t begin, size_t end, double kick, siz
     uint32_t *asked = w->asked + begin * DEM_SEGMENT;
     size_t *asked_count = &w->part_asked[part], *strained_count = &w->part_strained[part];
     *asked_count = *strained_count = 0;
-    bool damped = w->damping.local > 0 || w->damping.viscous > 0, tally = damped && w->ledger;
+    bool damped = w->damping.local > 0 || w->damping.viscous > 0;
+    bool tally = (damped || w->features.roll_bound) && w->ledger;
     // the last part moves the rows that fill up, too
     size_t last = end == w->segment_count ? w->bodies.padded : end * DEM_SEGMENT;
     for (size_t from = begin * DEM_SEGMENT; from < last;) {
@@ -288,6 +289,7 @@ static void motion_pass(dem_world *w, size_t begin, size_t end, double kick, siz
                               .viscous = w->damping.viscous,
                               .vector = w->damping.local_frame == DEM_LOCAL_VECTOR,
                               .exclude_gravity = w->damping.exclude_gravity,
+                              .bounded = w->features.roll_bound,
                               .tally = tally && segment < w->segment_count ? &w->motion_tallies[segment] : NULL,
                               .strain_limit = w->bodies.strain_limit,
                               .strained = w->strained + begin * DEM_SEGMENT + *strained_count,

@@ -21,6 +21,7 @@ typedef struct dem_material {
 typedef enum dem_normal_law {
     DEM_NORMAL_LINEAR,  ///< F = k overlap
     DEM_NORMAL_HERTZ,   ///< F = 4/3 E* sqrt(R*) overlap^1.5
+    DEM_NORMAL_DMT,     ///< the same less 2 pi w R*, the pull of stiff dry adhesive surfaces (Derjaguin et al. 1975)
 } dem_normal_law;
 
 typedef enum dem_damping_law {
@@ -47,6 +48,26 @@ typedef enum dem_friction_law {
     DEM_FRICTION_MINDLIN,  ///< spring 8 G* sqrt(R* overlap)
 } dem_friction_law;
 
+/// Resistance to rolling of two surfaces over each other.
+typedef enum dem_rolling_law {
+    DEM_ROLLING_NONE,
+    DEM_ROLLING_BOUNDED,   ///< stops or slows the spin of each body by at most sum of eta R_min F_n (Irazabal et al. 2017)
+    DEM_ROLLING_EPSD,      ///< spring, dashpot and cap mu_r R* F_n (Ai et al. 2011, type C)
+    DEM_ROLLING_CONSTANT,  ///< mu_r R* F_n against the rate; trembles at rest (Ai et al. 2011, type A)
+} dem_rolling_law;
+
+/// Resistance to twisting about the normal.
+typedef enum dem_twisting_law {
+    DEM_TWISTING_NONE,
+    DEM_TWISTING_MARSHALL,  ///< spring k_t a^2 / 2, dashpot c_t a^2 / 2, cap 2/3 mu a F_n, a = sqrt(R* overlap) (2009)
+    DEM_TWISTING_CONSTANT,  ///< mu_tw R* F_n against the rate
+} dem_twisting_law;
+
+typedef enum dem_cohesion_law {
+    DEM_COHESION_NONE,
+    DEM_COHESION_SJKR,  ///< pull by an energy density times the area of the overlap
+} dem_cohesion_law;
+
 /// The law between two materials.
 typedef struct dem_pair_law {
     uint32_t materials[2];
@@ -63,6 +84,15 @@ typedef struct dem_pair_law {
     double stiffness_ratio;       ///< k_t / k_n [-]
     double tangential_rate;       ///< c_t = m_eff G_t [1/s]; NAN: c_t = c_n sqrt(k_t / k_n) with a restitution, else 0
     bool rescale;                 ///< Mindlin: let the spring fall with the contact radius when unloading
+    double work_of_adhesion;      ///< w of DMT [J/m^2]
+    dem_rolling_law rolling;
+    double rolling_coefficient;  ///< eta or mu_r [-]
+    double rolling_stiffness;    ///< k_r of epsd [N m/rad]; NAN: 2.25 k_n mu_r^2 R*^2
+    double rolling_damping;      ///< ratio of the dashpot of epsd [-]
+    dem_twisting_law twisting;
+    double twisting_coefficient;  ///< mu_tw of the constant law [-]
+    dem_cohesion_law cohesion;
+    double energy_density;  ///< of SJKR [J/m^3]
 } dem_pair_law;
 
 /// One kind of grain. Exactly one of `clump_file`, `clump`, `sphere_radius` tells its form.

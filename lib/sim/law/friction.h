@@ -49,10 +49,11 @@ DEM_INLINE wide3 spring_turn(wide3 spring, wide3 n, wide turn)
 }
 
 typedef struct friction_law {
-    wide3 force;   ///< on the first body [N]
-    wide3 spring;  ///< its length afterwards [m]
-    wide3 dash;    ///< what of the force is not the spring's [N] (ledger)
-    wide lost;     ///< dissipated by sliding since the last step [J] (ledger)
+    wide3 force;                             ///< on the first body [N]
+    wide3 spring;                            ///< its length afterwards [m]
+    wide3 dash;                              ///< what of the force is not the spring's [N] (ledger)
+    wide lost;                               ///< dissipated by sliding since the last step [J] (ledger)
+    wide stiffness, old_stiffness, damping;  ///< of the spring, now and a step ago, and of the dashpot [N/m, N s/m]
 } friction_law;
 
 /// `spring` has been turned; `slip` is the tangential velocity of the second surface over the first [m/s], `vn` that
@@ -96,7 +97,7 @@ DEM_INLINE friction_law friction(const dem_features f, const wide *law, const no
     force = select3(slides, capped, force);
     spring = select3(slides, scale3(left, per_stiffness), spring);
     wide3 none = {zero, zero, zero};
-    friction_law result = {or_zero3(on, force), or_zero3(on, spring), none, zero};
+    friction_law result = {or_zero3(on, force), or_zero3(on, spring), none, zero, stiffness, old_stiffness, damping};
     if (f.ledger) {
         // work of the mean force over the slip, less what the spring holds more than before
         wide3 both = along3(scale3(result.spring, stiffness), old_stiffness, start);
