@@ -32,7 +32,7 @@ static outcome run(const model *m, uint64_t steps)
     return o;
 }
 
-typedef enum law_kind { ELASTIC, LINEAR_ALL, HERTZ_ALL, LAW_KINDS } law_kind;
+typedef enum law_kind { ELASTIC, LINEAR_ALL, HERTZ_ALL, LINEAR_MOMENTS, HERTZ_MOMENTS, LAW_KINDS } law_kind;
 
 static dem_pair_law law_of(law_kind kind)
 {
@@ -44,9 +44,20 @@ static dem_pair_law law_of(law_kind kind)
     law.restitution = 0.6;
     law.friction = DEM_FRICTION_LINEAR;
     law.friction_coefficient = 0.4;
-    if (kind == HERTZ_ALL) {
+    if (kind == HERTZ_ALL || kind == HERTZ_MOMENTS) {
         law.normal = DEM_NORMAL_HERTZ;
         law.friction = DEM_FRICTION_MINDLIN;
+    }
+    if (kind == LINEAR_MOMENTS || kind == HERTZ_MOMENTS) {
+        law.rolling = DEM_ROLLING_EPSD;
+        law.rolling_coefficient = 0.2;
+        law.twisting = DEM_TWISTING_MARSHALL;
+        law.cohesion = DEM_COHESION_SJKR;
+        law.energy_density = 1e4;
+    }
+    if (kind == HERTZ_MOMENTS) {
+        law.normal = DEM_NORMAL_DMT;
+        law.work_of_adhesion = 0.5;
     }
     return law;
 }
@@ -183,12 +194,14 @@ static void a_scene_far_from_the_origin_is_exact_to_the_rounding_there(void **st
 
 // ---- units
 
-// lengths times `s` at the same times: masses s^3, stiffnesses s^3, moduli s^2
+// lengths times `s` at the same times: masses s^3, stiffnesses and energies of a surface s^3, moduli s^2
 static model *scaled_model(law_kind kind, double s)
 {
     model *m = meeting(kind);
     m->materials[0].young *= s * s;
     m->laws[0].stiffness *= s * s * s;
+    m->laws[0].work_of_adhesion *= s * s * s;
+    m->laws[0].energy_density *= s * s;
     m->scene.gravity = v3(0, 0, -9.81 * s);
     for (size_t i = 0; i < m->scene.shape_count; i++) {
         m->shapes[i].sphere_radius *= s;
