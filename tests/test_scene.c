@@ -82,8 +82,13 @@ static void every_key_of_a_law_is_read(void **state)
         " 'friction': {'law': 'mindlin', 'coefficient': 0, 'rescale': false}},\n"
         "{'between': ['b', 'b'], 'normal': {'stiffness': '1 MN/m', 'restitution': 1},\n"
         " 'friction': {'coefficient': 1, 'stiffness_ratio': 0.5}},\n"
-        "{'between': ['c', 'c'], 'normal': {'stiffness': 1}, 'friction': null, 'rolling': null}]}");
-    check(s.material_count == 3 && s.law_count == 4);
+        "{'between': ['c', 'c'], 'normal': {'stiffness': 1}, 'friction': null, 'rolling': null},\n"
+        "{'between': ['a', 'c'], 'normal': {'stiffness': 1}, 'friction': {'coefficient': 1},\n"
+        " 'rolling': {'law': 'epsd', 'coefficient': 0.1, 'stiffness': 3, 'damping': 0.2},\n"
+        " 'twisting': {'law': 'marshall'}, 'cohesion': {'law': 'sjkr', 'energy_density': '3 J/m3'}},\n"
+        "{'between': ['b', 'c'], 'normal': {'stiffness': 1}, 'rolling': {'law': 'bounded', 'coefficient': 0.2},\n"
+        " 'twisting': {'law': 'constant', 'coefficient': 0.3}}]}");
+    check(s.material_count == 3 && s.law_count == 6);
     check_close(s.materials[0].density, 2650, 1e-15);
     check(s.materials[0].young == 70e9 && s.materials[0].poisson == 0.17);
     check(isnan(s.materials[2].density) && isnan(s.materials[2].young) && isnan(s.materials[2].poisson));
@@ -97,6 +102,12 @@ static void every_key_of_a_law_is_read(void **state)
     check(l[2].stiffness == 1e6 && l[2].damping == DEM_DAMPING_RESTITUTION && l[2].restitution == 1);
     check(l[2].friction == DEM_FRICTION_LINEAR && l[2].stiffness_ratio == 0.5 && isnan(l[2].tangential_stiffness));
     check(l[3].friction == DEM_FRICTION_NONE && l[3].damping == DEM_DAMPING_NONE);
+    check(l[3].rolling == DEM_ROLLING_NONE && l[3].twisting == DEM_TWISTING_NONE);
+    check(l[4].rolling == DEM_ROLLING_EPSD && l[4].rolling_coefficient == 0.1 && l[4].rolling_stiffness == 3);
+    check(l[4].rolling_damping == 0.2 && l[4].twisting == DEM_TWISTING_MARSHALL);
+    check(l[4].cohesion == DEM_COHESION_SJKR && l[4].energy_density == 3);
+    check(l[5].rolling == DEM_ROLLING_BOUNDED && l[5].rolling_coefficient == 0.2 && isnan(l[5].rolling_stiffness));
+    check(l[5].twisting == DEM_TWISTING_CONSTANT && l[5].twisting_coefficient == 0.3);
     dem_scene_release(&s);
 }
 

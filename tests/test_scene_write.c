@@ -23,6 +23,10 @@ static void check_same_law(const dem_pair_law *a, const dem_pair_law *b)
     check(a->tail == b->tail && a->friction == b->friction && a->friction_coefficient == b->friction_coefficient);
     check(same(a->tangential_stiffness, b->tangential_stiffness) && same(a->tangential_rate, b->tangential_rate));
     check(a->stiffness_ratio == b->stiffness_ratio && a->rescale == b->rescale);
+    check(a->work_of_adhesion == b->work_of_adhesion && a->rolling == b->rolling && a->twisting == b->twisting);
+    check(a->rolling_coefficient == b->rolling_coefficient && a->rolling_damping == b->rolling_damping);
+    check(same(a->rolling_stiffness, b->rolling_stiffness) && a->twisting_coefficient == b->twisting_coefficient);
+    check(a->cohesion == b->cohesion && a->energy_density == b->energy_density);
 }
 
 static void check_same_fill(const dem_fill_def *a, const dem_fill_def *b)
@@ -118,13 +122,19 @@ static void a_resolved_scene_reads_back_as_the_same(void **state)
         NULL);
     check_round_trip(
         "{'schema': 'dem-scene/1', 'materials': {'a': {'young': 1e9, 'poisson': 0.3}, 'b': {'density': 3,\n"
-        "'young': 1}}, 'contacts': [\n"
+        "'young': 1}, 'c': {'young': 1, 'poisson': 0.2}}, 'contacts': [\n"
         "{'between': ['a', 'a'], 'effective_mass': 'body', 'normal': {'law': 'hertz', 'damping_rate': 5,\n"
         " 'restitution_mode': 'tension_allowed'}, 'friction': {'coefficient': 1, 'rescale': false}},\n"
         "{'between': ['a', 'b'], 'normal': {'stiffness_from': 'young', 'restitution': 0.9},\n"
         " 'friction': {'coefficient': 1, 'stiffness_ratio': 0.1, 'damping_rate': 0}},\n"
-        "{'between': ['b', 'b'], 'normal': {'stiffness': 1},\n"
-        " 'friction': {'coefficient': 1, 'stiffness': 0.1}}],\n"
+        "{'between': ['b', 'b'], 'normal': {'stiffness': 1}, 'rolling': {'law': 'constant', 'coefficient': 0.1},\n"
+        " 'twisting': {'law': 'constant', 'coefficient': 0.7},\n"
+        " 'friction': {'coefficient': 1, 'stiffness': 0.1}},\n"
+        "{'between': ['c', 'c'], 'normal': {'law': 'dmt', 'work_of_adhesion': '50 mJ/m2'},\n"
+        " 'rolling': {'law': 'epsd', 'coefficient': 0.1, 'damping': 0.7, 'stiffness': 5},\n"
+        " 'twisting': {'law': 'marshall'}, 'cohesion': {'law': 'sjkr', 'energy_density': 7},\n"
+        " 'friction': {'coefficient': 1}},\n"
+        "{'between': ['c', 'a'], 'normal': {'stiffness': 1}, 'rolling': {'law': 'bounded', 'coefficient': 0.1}}],\n"
         "'shapes': {'s': {'spheres': [[0, 0, 0, 1], [0.1, 0.7, 0.3, 0.6]], 'mass': 2, 'inertia': [1, 2, 3],\n"
         " 'material': 'a'}, 't': {'spheres': [[5, 0, 0, 1], [5.1, 0.7, 0.3, 0.6], [4, 0, 0, 0.3]],\n"
         " 'material': 'b'}}}",
