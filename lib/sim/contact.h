@@ -311,7 +311,7 @@ DEM_INLINE void wall_velocity(const dem_features f, const dem_rows *rows, const 
 
 DEM_INLINE void load_law(const dem_features f, const dem_rows *rows, const uint32_t *row, wide law[LAW_SLOTS])
 {
-    const bool more = turns(f) || adheres(f) || f.roll_bound;
+    const bool more = turns(f) || adheres(f) || f.roll_bound || f.jkr;
     if (f.mixed) {
         for (int k = 0; k < (more ? LAW_SLOTS : LAW_MORE); k += 8)
             rows_load(rows->laws + k, LAW_SLOTS, row, law + k);
@@ -359,6 +359,8 @@ DEM_INLINE void put_records(const dem_features f, const contact_batch *batch, si
     wide_store(elastic, n->elastic * weight);
     wide_store(stiffness, n->stiffness * weight);
     wide_store(normal, net * weight);
+    if (f.jkr)
+        pulled = pulled + n->energy;
     wide_store(energy, pulled * weight);
     wide_store(held, wide_all(0.5) * slide * dot3(*spring, *spring) * weight);
     wide_store(slip, slide);
@@ -383,7 +385,8 @@ DEM_INLINE void put_records(const dem_features f, const contact_batch *batch, si
         if (r->touches) {
             // of the linear part F = k d the half, of Hertz' F = 2/3 k d two fifths
             double linear = f.hertz ? 3 * elastic[i] - 2 * stiffness[i] * r->overlap : elastic[i];
-            r->elastic_normal = (linear / 2 + (elastic[i] - linear) * 2 / 5) * r->overlap + energy[i];
+            double simple = (linear / 2 + (elastic[i] - linear) * 2 / 5) * r->overlap;
+            r->elastic_normal = (f.jkr ? 0 : simple) + energy[i];
             r->elastic_slide = held[i];
         }
     }
@@ -477,29 +480,41 @@ DEM_INLINE contact_moment contact_turning(const dem_features f, const dem_contac
     return result;
 }
 
+/// Which contacts of JKR hold: those that overlap, and those that have done so and not yet parted. `gone`: how far they
+/// are from parting [m]; `held`: the energy that is left there [J].
+DEM_INLINE wide_mask jkr_holds(const wide *law, wide reduced, wide overlap, wide attached, wide *gone, wide *held)
+{
+    wide modulus = wide_all(0.5) * law[LAW_HERTZ], k = jkr_softness(law[LAW_JKR], modulus, reduced), end;
+    *held = jkr(k, modulus, reduced, jkr_parting(k, &end)).energy;
+    *gone = wide_fnma(end, reduced, overlap);
+    return wide_less(wide_or_zero(wide_less(wide_all(0), attached), end * reduced), overlap);
+}
+
 DEM_INLINE void contact_law(const dem_features f, const dem_rows *rows, const dem_contact_job *job, size_t at, size_t g,
                             contact_batch *batch, const bool wall, const bool record)
 {
     const dem_contact_columns *c = &job->columns;
-    wide law[LAW_SLOTS], zero = wide_all(0);
+    wide law[LAW_SLOTS], zero = wide_all(0), reduced = zero;
     load_law(f, rows, f.mixed ? c->law + at : NULL, law);
     wide overlap = wide_load(batch->at[AT_OVERLAP] + g);
     wide_mask on = wide_less(zero, overlap);
+    wide held = zero, gone = overlap;
+    if (needs_reduced(f))
+        reduced = wide_load(batch->at[AT_REDUCED] + g);
+    if (f.jkr)
+        on = jkr_holds(law, reduced, overlap, wide_load(c->attached + at), &gone, &held);
     wide3 n = get3(batch, AT_NORMAL, g), v = get3(batch, AT_VELOCITY, g);
     // at the start nothing has passed; the step to come is as good
     wide per_step = wide_all(1 / (job->last_step > 0 ? job->last_step : job->next_step));
-    wide vn = dot3(v, n), inverse_mass = zero, mass = zero, reduced = zero, area = zero,
-         step = wide_all(job->last_step);
+    wide vn = dot3(v, n), inverse_mass = zero, mass = zero, area = zero, step = wide_all(job->last_step);
     if (damped(f)) {
         inverse_mass = wide_load(batch->at[AT_MASS] + g);
         mass = wide_all(1) / inverse_mass;
     }
-    if (needs_reduced(f))
-        reduced = wide_load(batch->at[AT_REDUCED] + g);
     if (f.young)
         area = wide_load(batch->at[AT_AREA] + g);
     normal_law normal = normal_elastic(f, law, overlap, reduced, area);
-    normal_damp(f, law, &normal, inverse_mass, mass, overlap, vn, step, per_step);
+    normal_damp(f, law, &normal, inverse_mass, mass, gone, vn, step, per_step);
 
     wide weight = f.weighted ? wide_load(c->weight + at) : wide_all(1);
     wide3 force = {zero, zero, zero}, spring = force;
@@ -543,6 +558,14 @@ DEM_INLINE void contact_law(const dem_features f, const dem_rows *rows, const de
         if (!record)
             wide_store(c->loss + at, now);
     }
+    if (f.jkr) {
+        // what the jump together sets free, and what is held where they part, is lost
+        wide was = wide_load(c->attached + at), now = wide_or_zero(on, wide_all(1));
+        wide jumps = wide_or_zero(wide_less(was, now), zero - normal.energy);
+        loss.viscous = loss.viscous + (jumps + wide_or_zero(wide_less(now, was), held));
+        if (!record)
+            wide_store(c->attached + at, now);
+    }
     if (f.weighted) {
         force = scale3(force, weight);
         loss = (contact_loss){loss.friction * weight, loss.viscous * weight};
@@ -552,10 +575,13 @@ DEM_INLINE void contact_law(const dem_features f, const dem_rows *rows, const de
         put_records(f, batch, g, &normal, net, pulled, &force, &spring, slide, mass, weight, on, records);
     wide power = zero;  // of a moving wall
     if (turns(f)) {
+        wide before = wide_fma(vn, step, overlap), patch = normal.radius;
+        if (!f.hertz)
+            patch = wide_sqrt(reduced * wide_max(overlap, zero));
         turning_state s = {.n = n,
                            .reduced = reduced,
-                           .overlap = overlap,
-                           .before = wide_fma(vn, step, overlap),
+                           .patch = patch,
+                           .patch_before = radius_before(f, &normal, reduced, overlap, before),
                            .step = step,
                            .slide = slide,
                            .slide_before = slide_before,
@@ -572,10 +598,10 @@ DEM_INLINE void contact_law(const dem_features f, const dem_rows *rows, const de
     }
     if (f.ledger && (f.friction || turns(f)))
         tally_add(job->tally->friction, g, loss.friction);
-    if (f.ledger && damped(f))
+    if (f.ledger && (damped(f) || f.jkr))
         tally_add(job->tally->viscous, g, loss.viscous);
     if (f.roll_bound) {
-        wide bound = law[LAW_ROLL_BOUND] * wide_load(batch->at[AT_RADIUS] + g) * wide_abs(normal.force) * weight;
+        wide bound = law[LAW_ROLL_BOUND] * wide_load(batch->at[AT_RADIUS] + g) * normal_grip(f, &normal) * weight;
         wide_store(batch->at[AT_BOUND] + g, wide_or_zero(on, bound * wide_all(job->kick)));
     }
     if (f.watch) {

@@ -113,7 +113,9 @@ size_t dem_contact_bytes(const dem_features *f, int form)
 
 dem_contact_history dem_history_get(const dem_contact_columns *c, size_t at)
 {
-    dem_contact_history h = {.twist = c->twist ? c->twist[at] : 0, .loss = c->loss ? c->loss[at] : 0};
+    dem_contact_history h = {.twist = c->twist ? c->twist[at] : 0,
+                             .attached = c->attached ? c->attached[at] : 0,
+                             .loss = c->loss ? c->loss[at] : 0};
     for (int k = 0; k < 3; k++) {
         h.spring[k] = c->spring[k] ? c->spring[k][at] : 0;
         h.dash[k] = c->dash[k] ? c->dash[k][at] : 0;
@@ -137,6 +139,8 @@ void dem_history_put(const dem_contact_columns *c, size_t at, const dem_contact_
     }
     if (c->twist)
         c->twist[at] = h->twist;
+    if (c->attached)
+        c->attached[at] = h->attached;
     if (c->loss)
         c->loss[at] = h->loss;
 }

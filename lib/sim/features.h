@@ -22,6 +22,7 @@
     X(twisting, "a twisting spring with a cap, remembered by each contact")                                            \
     X(twist_constant, "a constant moment against twisting")                                                            \
     X(sjkr, "cohesion by the area of the overlap")                                                                     \
+    X(jkr, "adhesion that deforms the surfaces, remembered by each contact")                                           \
     X(dmt, "a constant adhesion")                                                                                      \
     X(offset, "spheres away from the centre of their body")                                                            \
     X(scaled, "bodies that scale their shape")                                                                         \
@@ -72,6 +73,7 @@ typedef enum dem_law_slot {
     LAW_TWIST_CONSTANT,         ///< coefficient of the constant moment: this R* F_n [-]
     LAW_ENERGY_DENSITY,         ///< of the overlap's area: pull by this A [Pa]
     LAW_ADHESION,               ///< 2 pi w: pull by this R* [N/m]
+    LAW_JKR,                    ///< 2 pi w [N/m]; with E* of LAW_HERTZ
     LAW_SLOTS = 32
 } dem_law_slot;
 

@@ -56,6 +56,7 @@ typedef struct dem_contact_columns {
     double *dash[3];                ///< force of the tangential dashpot in the last step [N] (ledger, slide_damping)
     double *roll[3];                ///< angle of the rolling spring [rad] (rolling)
     double *twist;                  ///< angle of the twisting spring [rad] (twisting)
+    double *attached;               ///< 1: surfaces hold on to each other [-] (jkr)
     double *drag[3];                ///< moment not of the springs in the last step [N m] (ledger, with any of these)
     double *loss;                   ///< elastic force that was not passed on in the last step [N] (ledger, damped)
     double *weight;                 ///< share of the force that counts [-] (weighted)

@@ -44,6 +44,12 @@ static dem_status fill_normal(const dem_scene *scene, const dem_pair_law *law, d
             return refuse(scene, law, "is of Hertz; give both materials \"young\" and \"poisson\"", error);
         row[LAW_HERTZ] = 2 * young;
         needs->hertz = true;
+        if (law->normal == DEM_NORMAL_JKR) {
+            if (scene->multiple != DEM_MULTIPLE_SUM)
+                return refuse(scene, law, "is of JKR, for which \"contacts_between_clumps\" must be \"sum\"", error);
+            row[LAW_JKR] = 2 * DEM_PI * law->work_of_adhesion;
+            needs->jkr = true;
+        }
         if (law->normal == DEM_NORMAL_DMT) {
             row[LAW_ADHESION] = 2 * DEM_PI * law->work_of_adhesion;
             needs->dmt = true;
@@ -64,7 +70,8 @@ static dem_status fill_normal(const dem_scene *scene, const dem_pair_law *law, d
 
 static void fill_damping(const dem_pair_law *law, double *row, dem_features *needs)
 {
-    bool cut = law->tail == DEM_TAIL_CUT;
+    // where surfaces pull anyway, the dashpot may, too
+    bool cut = law->tail == DEM_TAIL_CUT && law->normal != DEM_NORMAL_JKR;
     row[LAW_FLOOR] = cut && law->damping != DEM_DAMPING_NONE ? 0 : -INFINITY;
     double zeta = 0;
     if (law->damping == DEM_DAMPING_RATE && law->damping_rate > 0) {

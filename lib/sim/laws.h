@@ -2,6 +2,8 @@
 #ifndef DEM_SIM_LAWS_H
 #define DEM_SIM_LAWS_H
 
+#include <math.h>
+
 #include "dem/scene.h"
 #include "sim/features.h"
 
@@ -31,6 +33,19 @@ static inline const double *laws_between(const dem_laws *laws, uint32_t a, uint3
 static inline double law_stiffness(const double *law, double area_length, double radius)
 {
     return law[LAW_STIFFNESS] + law[LAW_YOUNG] * area_length + law[LAW_HERTZ] * radius;
+}
+
+/// How far beyond the touch it may hold, of JKR 3/4 k (k/4)^(1/3) R* [m]. `reduced`: R* [m].
+static inline double law_reach(const double *law, double reduced)
+{
+    double k = law[LAW_JKR] > 0 ? sqrt(2 * law[LAW_JKR] / (law[LAW_HERTZ] * reduced)) : 0;
+    return 0.75 * k * cbrt(k / 4) * reduced;
+}
+
+/// Its contact radius where it bears nothing, of JKR (9 pi w R*^2 / (2 E*))^(1/3) [m].
+static inline double law_radius_at_rest(const double *law, double reduced)
+{
+    return law[LAW_JKR] > 0 ? cbrt(4.5 * law[LAW_JKR] * reduced * reduced / law[LAW_HERTZ]) : 0;
 }
 
 /// Stiffness of its rolling spring [N m/rad]; `reduced`: R* [m], `normal` its normal stiffness.

@@ -22,7 +22,9 @@ static double margin_length(const dem_world *w, size_t row)
 double dem_refresh_margin(const dem_world *w, size_t a, size_t b, double strides)
 {
     double length = smaller(margin_length(w, a), margin_length(w, b));
-    return larger(MARGIN_LEAST * length, smaller(MARGIN_MOST * length, HORIZON * strides));
+    double margin = larger(MARGIN_LEAST * length, smaller(MARGIN_MOST * length, HORIZON * strides));
+    // surfaces that hold on to each other stay in sight
+    return larger(margin, 1.1 * w->reach);
 }
 
 double dem_refresh_limit(const dem_world *w, size_t row)

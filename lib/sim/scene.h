@@ -17,10 +17,10 @@ double dem_shape_diameter(const dem_shape_def *shape);
 /// True where a body of one material may meet a body or wall of the other.
 bool dem_scene_can_meet(const dem_scene *scene, uint32_t a, uint32_t b);
 
-/// Whether the elastic part of the normal force is Hertz'.
+/// Whether the elastic part of the normal force is Hertz', or becomes so without adhesion.
 static inline bool dem_law_of_hertz(const dem_pair_law *law)
 {
-    return law->normal == DEM_NORMAL_HERTZ || law->normal == DEM_NORMAL_DMT;
+    return law->normal != DEM_NORMAL_LINEAR;
 }
 
 /// The safety of an automatic step that is not given: 0.8, 0.5 where a Hertz law is in force [-].

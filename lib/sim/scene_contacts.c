@@ -60,7 +60,7 @@ static dem_status read_restitution(dem_scene_reader *r, const dem_scene_value *v
 }
 
 static const dem_choice normal_laws[] = {{"linear", DEM_NORMAL_LINEAR}, {"hertz", DEM_NORMAL_HERTZ},
-                                         {"dmt", DEM_NORMAL_DMT},       {"jkr", DEM_NOT_BUILT},
+                                         {"dmt", DEM_NORMAL_DMT},       {"jkr", DEM_NORMAL_JKR},
                                          {"plugin", DEM_NOT_BUILT},     {NULL, 0}};
 static const dem_choice tails[] = {{"cut_corrected", DEM_TAIL_CUT}, {"tension_allowed", DEM_TAIL_TENSION}, {NULL, 0}};
 
@@ -103,14 +103,16 @@ static dem_status read_normal(dem_scene_reader *r, const dem_scene_value *v, con
     if (restitution && rate)
         return dem_scene_refuse(r, v, "give one of them", "has both \"restitution\" and \"damping_rate\"");
     law->damping = restitution ? DEM_DAMPING_RESTITUTION : rate ? DEM_DAMPING_RATE : DEM_DAMPING_NONE;
-    bool dmt = law->normal == DEM_NORMAL_DMT;
-    if (dmt != dem_given(given, NORMAL_WORK))
-        return dmt ? dem_scene_refuse(r, v, "add it", "the law dmt needs \"work_of_adhesion\"")
-                   : dem_scene_refuse(r, v, "use the law dmt with it", "only the law dmt has \"work_of_adhesion\"");
+    bool adhesive = law->normal == DEM_NORMAL_DMT || law->normal == DEM_NORMAL_JKR;
+    const char *name = law->normal == DEM_NORMAL_DMT ? "dmt" : law->normal == DEM_NORMAL_JKR ? "jkr" : "hertz";
+    if (adhesive != dem_given(given, NORMAL_WORK))
+        return adhesive ? dem_scene_refuse(r, v, "add it", "the law %s needs \"work_of_adhesion\"", name)
+                        : dem_scene_refuse(r, v, "use one of them with it",
+                                           "only the laws jkr and dmt have \"work_of_adhesion\"");
     if (dem_law_of_hertz(law)) {
         if (stiffness || from)
             return dem_scene_refuse(r, v, "leave it out, or use the linear law",
-                                    "the law %s has no \"%s\", it follows from the materials", dmt ? "dmt" : "hertz",
+                                    "the law %s has no \"%s\", it follows from the materials", name,
                                     stiffness ? "stiffness" : "stiffness_from");
         return check_elastic(r, v, law, true);
     }

@@ -88,10 +88,14 @@ static void put_normal(dem_json_writer *w, const dem_pair_law *law)
 {
     dem_json_open_object(w, "normal");
     static const char *const names[] = {
-        [DEM_NORMAL_LINEAR] = "linear", [DEM_NORMAL_HERTZ] = "hertz", [DEM_NORMAL_DMT] = "dmt"};
+        [DEM_NORMAL_LINEAR] = "linear",
+        [DEM_NORMAL_HERTZ] = "hertz",
+        [DEM_NORMAL_JKR] = "jkr",
+        [DEM_NORMAL_DMT] = "dmt",
+    };
     bool hertz = dem_law_of_hertz(law);
     dem_json_put_string(w, "law", names[law->normal]);
-    if (law->normal == DEM_NORMAL_DMT)
+    if (law->normal == DEM_NORMAL_DMT || law->normal == DEM_NORMAL_JKR)
         dem_json_put_number(w, "work_of_adhesion", law->work_of_adhesion);
     if (!hertz && law->stiffness > 0)
         dem_json_put_number(w, "stiffness", law->stiffness);

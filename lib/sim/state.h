@@ -154,6 +154,7 @@ struct dem_world {
     const dem_kernels *kernels;
     const dem_contact_instance *instance, *wall_instance;
     double *shifts;             ///< [4 an image] (periodic)
+    double reach;               ///< how far beyond the touch contacts may hold [m]
     double skin, margin_least;  ///< of the search; of the candidates, by radius: see refresh.h [m]
     int threads;
     size_t domain_bodies;  ///< bodies of a domain: their momenta are written by one thread

@@ -120,6 +120,7 @@ static void add_contact(const dem_world *w, body_problem *p, const dem_touch *t,
         mass += inverse_mass(w, row[1], arm[1], t->normal);
     mass = 1 / mass;
     double radius = law[LAW_HERTZ] > 0 ? sqrt(t->reduced * larger(t->overlap, 0)) : 0, times = wall ? 1 : 2;
+    radius += law_radius_at_rest(law, t->reduced);
     double kn = law_stiffness(law, t->area_length, radius), kt = law_slide_stiffness(law, t->area_length, radius);
     add_stiffness(w, p->stiffness, row[0], arm[0], t->normal, times * kn, times * kt);
     double patch2 = t->reduced * larger(t->overlap, 0), roll = law_roll_stiffness(law, t->reduced, kn);
@@ -152,7 +153,7 @@ static void add_pairs(const dem_world *w, size_t row, bool listed, body_problem 
         const dem_segment *s = &w->contacts.segments[pair->a / DEM_SEGMENT];
         for (size_t k = 0; k < pair->count; k++) {
             dem_touch t = dem_touch_of_pair(w, segment_place(s, pair->start + k));
-            if (!listed && t.overlap <= 0)
+            if (!listed && t.overlap <= -w->reach)
                 continue;
             dem_vec3 from_a = v3_sub(t.point, body_position(&w->bodies, pair->a));
             dem_vec3 from_b = v3_sub(t.point, v3_add(body_position(&w->bodies, pair->b), t.shift));
@@ -177,7 +178,7 @@ static void add_walls(const dem_world *w, size_t row, bool listed, body_problem 
                 continue;
             dem_touch t = dem_touch_of_wall(w, (dem_wall_form)form, at);
             dem_vec3 arm = v3_sub(t.point, body_position(&w->bodies, row));
-            if (t.overlap > 0 || (listed && form != DEM_FORM_MESH))
+            if (t.overlap > -w->reach || (listed && form != DEM_FORM_MESH))
                 add_contact(w, p, &t, law_of(w, &contacts->columns, at), (uint32_t[]){(uint32_t)row, 0},
                             (dem_vec3[]){arm, arm}, true);
         }
@@ -229,9 +230,10 @@ static double stiffest_contact(const dem_world *w, size_t row, const double *law
         // the duration of an impact, as that of a spring: 2.943 d / v = pi / w
         double overlap = pow(15 * mass * speed * speed / (8 * law[LAW_HERTZ] * sqrt(r / 2)), 0.4);
         double frequency = overlap > 0 ? DEM_PI * speed / (2.9432752 * overlap) : 0;
-        if (!(law[LAW_STIFFNESS] + law[LAW_YOUNG] > 0))
+        double rest = law_radius_at_rest(law, r / 2);
+        if (!(law[LAW_STIFFNESS] + law[LAW_YOUNG] + rest > 0))
             return frequency * frequency;
-        radius = sqrt(r / 2 * overlap);
+        radius = sqrt(r / 2 * overlap) + rest;
     }
     return law_stiffness(law, r / 2, radius) / mass;
 }

@@ -58,7 +58,7 @@ static void set_features(dem_world *w, const dem_body_def *defs, size_t count)
     dem_features *f = &w->features;
     *f = w->laws.needs;
     f->watch = !(w->time_def.step > 0);
-    f->ledger = w->ledger && (w->laws.damped || f->friction || features_turning(f) || w->walls.move);
+    f->ledger = w->ledger && (w->laws.damped || f->jkr || f->friction || features_turning(f) || w->walls.move);
     f->periodic = w->periodic;
     f->moving = w->walls.move;
     f->weighted = w->multiple != DEM_MULTIPLE_SUM;
@@ -113,6 +113,17 @@ static dem_status make_lists(dem_world *w, dem_error *error)
     return dem_views_create(w, error);
 }
 
+// of the largest spheres, under the law that lets them hold farthest
+static double longest_reach(const dem_world *w)
+{
+    double radius = 0, reach = 0;
+    for (size_t row = 0; row < w->bodies.count; row++)
+        radius = larger(radius, w->templates.items[w->bodies.shape[row]].radius_max * body_scale(&w->bodies, row));
+    for (size_t i = 0; w->features.jkr && radius > 0 && i < w->laws.count; i++)
+        reach = larger(reach, law_reach(w->laws.rows + LAW_SLOTS * i, radius));
+    return reach;
+}
+
 static dem_status make_state(dem_world *w, const dem_scene *scene, dem_error *error)
 {
     dem_body_def *defs = NULL;
@@ -135,7 +146,8 @@ static dem_status make_state(dem_world *w, const dem_scene *scene, dem_error *er
     w->team = dem_team_create(w->threads);
     if (!w->team)
         return dem_fail_memory(error);
-    w->skin = dem_broad_skin(w);
+    w->reach = longest_reach(w);
+    w->skin = larger(dem_broad_skin(w), 2.2 * w->reach);
     DEM_TRY(dem_search_create(w, error));
     if (w->periodic)
         DEM_TRY(dem_broad_images(w, error));

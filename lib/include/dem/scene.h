@@ -21,6 +21,7 @@ typedef struct dem_material {
 typedef enum dem_normal_law {
     DEM_NORMAL_LINEAR,  ///< F = k overlap
     DEM_NORMAL_HERTZ,   ///< F = 4/3 E* sqrt(R*) overlap^1.5
+    DEM_NORMAL_JKR,     ///< soft adhesive surfaces, which hold on beyond the touch (Johnson, Kendall & Roberts 1971)
     DEM_NORMAL_DMT,     ///< the same less 2 pi w R*, the pull of stiff dry adhesive surfaces (Derjaguin et al. 1975)
 } dem_normal_law;
 
@@ -84,7 +85,7 @@ typedef struct dem_pair_law {
     double stiffness_ratio;       ///< k_t / k_n [-]
     double tangential_rate;       ///< c_t = m_eff G_t [1/s]; NAN: c_t = c_n sqrt(k_t / k_n) with a restitution, else 0
     bool rescale;                 ///< Mindlin: let the spring fall with the contact radius when unloading
-    double work_of_adhesion;      ///< w of DMT [J/m^2]
+    double work_of_adhesion;      ///< w of JKR and DMT [J/m^2]
     dem_rolling_law rolling;
     double rolling_coefficient;  ///< eta or mu_r [-]
     double rolling_stiffness;    ///< k_r of epsd [N m/rad]; NAN: 2.25 k_n mu_r^2 R*^2

@@ -65,7 +65,7 @@ DEM_INLINE friction_law friction(const dem_features f, const wide *law, const no
     wide stiffness = law[LAW_SLIDE_STIFFNESS] + law[LAW_SLIDE_RATIO] * n->stiffness, old_stiffness = stiffness;
     wide3 start = spring;
     if (f.mindlin) {
-        wide old_radius = wide_sqrt(reduced * wide_max(overlap + vn * step, zero));
+        wide old_radius = radius_before(f, n, reduced, overlap, overlap + vn * step);
         wide kept = old_radius / wide_max(n->radius, wide_all(1e-300));
         stiffness = stiffness + law[LAW_SLIDE_HERTZ] * n->radius;
         old_stiffness = old_stiffness + law[LAW_SLIDE_HERTZ] * old_radius;
@@ -83,7 +83,7 @@ DEM_INLINE friction_law friction(const dem_features f, const wide *law, const no
     if (f.slide_damping)
         force = along3(force, damping, slip);
 
-    wide size2 = dot3(force, force), cap = law[LAW_FRICTION] * wide_abs(n->force);
+    wide size2 = dot3(force, force), cap = law[LAW_FRICTION] * normal_grip(f, n);
     wide_mask slides = wide_less(cap * cap, size2);
     wide part = cap * wide_rsqrt(size2), per_stiffness = wide_all(1) / stiffness;
     wide3 capped = scale3(force, part), left = capped;

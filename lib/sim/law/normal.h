@@ -4,12 +4,16 @@
 
 #include "base/simd.h"
 #include "sim/features.h"
+#include "sim/law/jkr.h"
 
 typedef struct normal_law {
     wide elastic;    ///< force of the spring [N]
     wide force;      ///< with the dashpot [N]
     wide stiffness;  ///< tangent of the spring [N/m]
     wide radius;     ///< sqrt(R* overlap), of the contact [m] (Hertz only)
+    wide spread;     ///< d radius / d overlap [-] (JKR only)
+    wide grip;       ///< force by which friction is measured: what JKR pulls counts twice at most [N] (JKR only)
+    wide energy;     ///< of the spring [J] (JKR only)
 } normal_law;
 
 /// R* = R_i R_j / (R_i + R_j)
@@ -23,14 +27,25 @@ DEM_INLINE normal_law normal_elastic(const dem_features f, const wide *law, wide
                                      wide area_length)
 {
     wide zero = wide_all(0);
-    normal_law n = {zero, zero, zero, zero};
+    normal_law n = {zero, zero, zero, zero, zero, zero, zero};
     if (f.linear) {
         n.stiffness = law[LAW_STIFFNESS];
         if (f.young)
             n.stiffness = n.stiffness + law[LAW_YOUNG] * area_length;
         n.elastic = n.stiffness * overlap;
     }
-    if (f.hertz) {
+    if (f.jkr) {
+        wide half = wide_all(0.5), modulus = half * law[LAW_HERTZ], k = jkr_softness(law[LAW_JKR], modulus, reduced);
+        jkr_law j = jkr(k, modulus, reduced, jkr_stretch(k, overlap / reduced));
+        n.energy = wide_fma(half * overlap, n.elastic, j.energy);
+        n.elastic = n.elastic + j.force;
+        // an upper bound of the tangent
+        n.stiffness = n.stiffness + law[LAW_HERTZ] * j.radius;
+        n.radius = j.radius;
+        n.spread = j.spread;
+        // pull-off 3/2 pi w R*
+        n.grip = wide_all(1.5) * law[LAW_JKR] * reduced;
+    } else if (f.hertz) {
         n.radius = wide_sqrt(reduced * wide_max(overlap, zero));
         wide tangent = law[LAW_HERTZ] * n.radius;
         n.elastic = n.elastic + wide_all(2.0 / 3) * (tangent * overlap);
@@ -38,6 +53,20 @@ DEM_INLINE normal_law normal_elastic(const dem_features f, const wide *law, wide
     }
     n.force = n.elastic;
     return n;
+}
+
+/// What friction and rolling are measured by [N].
+DEM_INLINE wide normal_grip(const dem_features f, const normal_law *n)
+{
+    return f.jkr ? n->grip : wide_abs(n->force);
+}
+
+/// The contact radius of a step ago [m]; `before`: the overlap then.
+DEM_INLINE wide radius_before(const dem_features f, const normal_law *n, wide reduced, wide overlap, wide before)
+{
+    if (f.jkr)
+        return wide_max(wide_fma(n->spread, before - overlap, n->radius), wide_all(0));
+    return wide_sqrt(reduced * wide_max(before, wide_all(0)));
 }
 
 /// Dashpot on the velocity `vn` of separation half a step ago [m/s], with the inverse of the effective mass [1/kg].
@@ -66,6 +95,8 @@ DEM_INLINE void normal_damp(const dem_features f, const wide *law, normal_law *n
     }
     if (f.cut)
         n->force = wide_max(n->force, law[LAW_FLOOR]);
+    if (f.jkr)
+        n->grip = wide_max(n->force + n->grip, wide_all(0));
 }
 
 #endif

@@ -13,7 +13,7 @@ typedef struct turning_state {
     wide3 roll;                               ///< angle of the rolling spring, turned with the contact [rad]
     wide twist;                               ///< angle of the twisting spring [rad]
     wide reduced;                             ///< R* [m]
-    wide overlap, before;                     ///< now and a step ago [m]
+    wide patch, patch_before;                 ///< contact radius, now and a step ago [m]
     wide inverse;                             ///< 1/I_r, of rolling [1/(kg m^2)]
     wide step;                                ///< time since the last step [s]
     wide slide, slide_before, slide_damping;  ///< of friction: stiffness now and a step ago, dashpot [N/m, N s/m]
@@ -48,13 +48,12 @@ DEM_INLINE void roll_spring(const dem_features f, const wide *law, const normal_
     wide stiffness = wide_fma(ratio, n->stiffness, law[LAW_ROLL_STIFFNESS]), old = stiffness;
     wide3 start = s->roll, angle = start;
     if (f.hertz) {
-        wide was = n->radius - wide_sqrt(s->reduced * wide_max(s->before, zero));
-        old = wide_fnma(ratio * law[LAW_HERTZ], was, stiffness);
+        old = wide_fnma(ratio * law[LAW_HERTZ], n->radius - s->patch_before, stiffness);
         angle = scale3(angle, angle_kept(old, stiffness));
     }
     angle = along3(angle, s->step, rate);
     wide3 moment = scale3(angle, stiffness);
-    wide size2 = dot3(moment, moment), cap = law[LAW_ROLL_CAP] * (s->reduced * wide_abs(n->force));
+    wide size2 = dot3(moment, moment), cap = law[LAW_ROLL_CAP] * (s->reduced * normal_grip(f, n));
     wide_mask slides = wide_less(cap * cap, size2);
     wide part = wide_select(slides, cap * wide_rsqrt(size2), wide_all(1));
     moment = scale3(moment, part);
@@ -74,11 +73,11 @@ DEM_INLINE void roll_spring(const dem_features f, const wide *law, const normal_
 DEM_INLINE void twist_spring(const dem_features f, const wide *law, const normal_law *n, const turning_state *s,
                              wide rate, wide step, turning_law *t)
 {
-    wide zero = wide_all(0), radius2 = s->reduced * wide_max(s->overlap, zero);
+    wide zero = wide_all(0), radius2 = s->patch * s->patch;
     wide stiffness = law[LAW_TWIST_RATIO] * s->slide * radius2;
-    wide old = law[LAW_TWIST_RATIO] * s->slide_before * (s->reduced * wide_max(s->before, zero));
+    wide old = law[LAW_TWIST_RATIO] * s->slide_before * (s->patch_before * s->patch_before);
     wide start = s->twist, angle = wide_fma(s->step, rate, start * angle_kept(old, stiffness));
-    wide cap = law[LAW_TWIST_CAP] * (wide_sqrt(radius2) * wide_abs(n->force));
+    wide cap = law[LAW_TWIST_CAP] * (s->patch * normal_grip(f, n));
     wide spring = wide_max(zero - cap, wide_min(cap, stiffness * angle));
     wide damping = law[LAW_TWIST_RATIO] * s->slide_damping * radius2;
     wide moment = wide_max(zero - cap, wide_min(cap, wide_fma(damping, rate, spring)));
@@ -104,7 +103,7 @@ DEM_INLINE turning_law turning(const dem_features f, const wide *law, const norm
         roll_spring(f, law, n, s, roll, step, &t);
     if (f.twisting)
         twist_spring(f, law, n, s, twist, step, &t);
-    wide hold = s->reduced * wide_abs(n->force);
+    wide hold = s->reduced * normal_grip(f, n);
     if (f.roll_constant) {
         wide size2 = dot3(roll, roll), moment = law[LAW_ROLL_CONSTANT] * hold * wide_rsqrt(size2);
         t.drag = along3(t.drag, wide_or_zero(wide_less(zero, size2), moment), roll);

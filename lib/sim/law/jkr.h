@@ -1,0 +1,73 @@
+/// Soft adhesive spheres (Johnson, Kendall & Roberts 1971), without the approximation of a contact radius that follows
+/// from the overlap as without adhesion. Surfaces jump together where they touch, and hold on to each other up to an
+/// overlap below 0.
+///
+/// In units of R*, with k = sqrt(2 pi w / (E* R*)) and s = sqrt(a / R*) of a contact of radius a:
+///   overlap = s^4 - k s,  force = E* R*^2 (4/3 s^6 - 2 k s^3),  energy = E* R*^3 (8/15 s^10 - 4/3 k s^7 + k^2 / 2 s^4)
+/// They part where the overlap is least, at s^3 = k / 4.
+#ifndef DEM_SIM_LAW_JKR_H
+#define DEM_SIM_LAW_JKR_H
+
+#include "base/simd.h"
+
+/// x^(1/3) of 0 <= x < 1e6: square roots come near it from above, Newton's method does the rest.
+DEM_INLINE wide cube_root(wide x)
+{
+    wide a = wide_sqrt(wide_sqrt(x)), b = wide_sqrt(wide_sqrt(a)), c = wide_sqrt(wide_sqrt(b));
+    wide root = wide_all(1.02) * (a * b) * (c * wide_sqrt(wide_sqrt(c)));
+    for (int i = 0; i < 5; i++)
+        root = wide_fma(root, wide_all(2), x / wide_max(root * root, wide_all(1e-300))) * wide_all(1.0 / 3);
+    return root;
+}
+
+/// k of a contact; `pull`: 2 pi w [N/m], `modulus`: E* [Pa], `reduced`: R* [m].
+DEM_INLINE wide jkr_softness(wide pull, wide modulus, wide reduced)
+{
+    return wide_sqrt(pull / wide_max(modulus * reduced, wide_all(1e-300)));
+}
+
+/// The s at which they part, and its overlap.
+DEM_INLINE wide jkr_parting(wide k, wide *overlap)
+{
+    wide s = cube_root(wide_all(0.25) * k);
+    *overlap = wide_all(-0.75) * k * s;
+    return s;
+}
+
+/// The largest s of s^4 - k s = `overlap` by Newton's method, which falls to it from above. Below the overlap at which
+/// they part there is none; what comes back is of no use then.
+DEM_INLINE wide jkr_stretch(wide k, wide overlap)
+{
+    enum { MOST = 60 };
+    wide zero = wide_all(0), s = wide_all(1 + 1e-6) * cube_root(k) + wide_sqrt(wide_sqrt(wide_max(overlap, zero)));
+    for (int i = 0; i < MOST; i++) {
+        wide cube = s * s * s, slope = wide_fms(wide_all(4), cube, k);
+        wide next = s - (s * (cube - k) - overlap) / slope;
+        // a lane that has arrived stays as it is, so that it does not depend on the others
+        wide_mask falls = wide_and(wide_less(zero, slope), wide_less(next, s));
+        if (!wide_bits(falls))
+            break;
+        s = wide_select(falls, next, s);
+    }
+    return s;
+}
+
+typedef struct jkr_law {
+    wide force;   ///< above 0: a push [N]
+    wide energy;  ///< [J]
+    wide radius;  ///< a [m]
+    wide spread;  ///< da / d(overlap) [-]
+} jkr_law;
+
+DEM_INLINE jkr_law jkr(wide k, wide modulus, wide reduced, wide s)
+{
+    wide square = s * s, cube = square * s, k_cube = k * cube, fourth = square * square;
+    wide scale = modulus * (reduced * reduced);
+    wide energy =
+        wide_fma(wide_all(8.0 / 15), cube * cube, wide_fma(wide_all(-4.0 / 3), k_cube, wide_all(0.5) * k * k));
+    return (jkr_law){scale * wide_fma(wide_all(4.0 / 3), cube * cube, wide_all(-2) * k_cube),
+                     scale * reduced * fourth * energy, reduced * square,
+                     (s + s) / wide_max(wide_fms(wide_all(4), cube, k), wide_all(1e-300))};
+}
+
+#endif
