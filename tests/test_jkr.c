@@ -207,10 +207,10 @@ static void clusters_are_the_same_bits_everywhere(void **state)
         m->laws[0].rolling = DEM_ROLLING_EPSD;
         m->laws[0].rolling_coefficient = 0.1;
         m->laws[0].twisting = DEM_TWISTING_MARSHALL;
-        m->scene.time.step = 1e-6;
+        m->scene.time.step = 4e-6;
         model_sphere(m, 2 * R);
         model_dumbbell(m, 1.5 * R, 2 * R);
-        model_lattice(m, 600, 5 * R, 0.5, 1);
+        model_lattice(m, 600, 4.8 * R, 0.1, 1);
         dem_kernels const *kernels = dem_kernels_choose(i == 1 ? "plain" : i == 2 ? "v3" : NULL);
         dem_world *w = model_world(m, i == 3 ? 2 : 1);
         if (kernels) {
