@@ -123,10 +123,9 @@ dem_status dem_field_flag(dem_scene_reader *r, const dem_scene_value *v, const d
 dem_status dem_field_text(dem_scene_reader *r, const dem_scene_value *v, const dem_field *field, void *into)
 {
     (void)field;
-    const char *text = dem_json_string(v->json);
+    const char *text = *(const char **)into = dem_json_string(v->json);
     if (!text)
         return dem_scene_refuse(r, v, "put it in quotes", "needs a text");
-    *(const char **)into = text;
     return DEM_OK;
 }
 
@@ -145,7 +144,7 @@ static dem_status refuse_unbuilt(dem_scene_reader *r, const dem_scene_value *v, 
 
 dem_status dem_field_choice(dem_scene_reader *r, const dem_scene_value *v, const dem_field *field, void *into)
 {
-    const char *text = NULL;
+    const char *text;
     char quoted[80];
     DEM_TRY(dem_field_text(r, v, field, &text));
     for (const dem_choice *c = field->choices; c->name; c++) {
@@ -175,7 +174,7 @@ static const char *shape_name(const void *user, size_t index)
 static dem_status read_name(dem_scene_reader *r, const dem_scene_value *v, const char *what,
                             const char *(*next)(const void *user, size_t index), uint32_t *index)
 {
-    const char *text = NULL, *name;
+    const char *text, *name;
     DEM_TRY(dem_field_text(r, v, NULL, &text));
     for (size_t i = 0; (name = next(r->scene, i)); i++)
         if (strcmp(name, text) == 0) {

@@ -31,9 +31,10 @@ check_tool() { # NAME FILE_OF_COMPLETIONS TOOL [SUBCOMMAND]
         has "$share/zsh/site-functions/_$file" "$choice"
         has "$share/fish/vendor_completions.d/$file.fish" "$choice"
     done
-    for section in NAME SYNOPSIS DESCRIPTION OPTIONS 'EXIT STATUS' EXAMPLES 'SEE ALSO'; do
+    for section in NAME SYNOPSIS DESCRIPTION OPTIONS 'EXIT STATUS' 'SEE ALSO'; do
         grep -q "^\.SH $section" page || fail "$name.1: no $section"
     done
+    ! grep -q '^Examples:' help || grep -q '^\.SH EXAMPLES' page || fail "$name.1: no EXAMPLES"
     [ "$(grep -c '^\.TP' page)" -gt 10 ] || fail "$name.1: too little"
 }
 
