@@ -16,7 +16,8 @@ CUBE = ([[x, y, z] for x in (0, 1) for y in (0, 1) for z in (0, 1)],
          [1, 5, 7], [1, 7, 3]])
 SCENE = """{ "schema": "dem-scene/1", "gravity": [0, 0, -9.81], "time": { "end": 1, "step": 1e-4 },
   "materials": { "stone": { "density": 2500 } },
-  "contacts": [ { "between": ["stone", "stone"], "normal": { "law": "linear", "stiffness": 2e4, "restitution": 0.3 } } ],
+  "contacts": [ { "between": ["stone", "stone"],
+                  "normal": { "law": "linear", "stiffness": 2e4, "restitution": 0.3 } } ],
   "shapes": { "ball": { "sphere": { "radius": "8 mm" }, "material": "stone" },
               "pair": { "spheres": [[-0.003, 0, 0, 0.006], [0.003, 0, 0, 0.006]], "material": "stone" } },
   "bodies": [ { "file": "bodies.csv" } ],
@@ -142,7 +143,8 @@ class Clumps(Folder):
             self.clump.export(self.path / "a.nothing")
 
     def test_wrong_parameters_are_refused(self):
-        for wrong in ({"spheres": 0}, {"gap": 2}, {"density": -1}, {"effort": "most"}, {"method": "magic"}, {"seed": -1}):
+        for wrong in ({"spheres": 0}, {"gap": 2}, {"density": -1}, {"effort": "most"}, {"method": "magic"},
+                      {"seed": -1}):
             with self.assertRaises(demclump.UsageError, msg=wrong):
                 demclump.pack(self.mesh, **wrong)
 
@@ -275,12 +277,13 @@ class Libraries(Folder):
         return self.import_from(self.path)
 
     def test_another_library_is_refused(self):
-        self.assertRegex(self.import_from(self.path), "ImportError: cannot find libdem.so.0.1; looked for .*DEM_LIBRARY_DIR")
+        self.assertRegex(self.import_from(self.path),
+                         "ImportError: cannot find libdem.so.0.1; looked for .*DEM_LIBRARY_DIR")
         self.assertRegex(self.fake("int x;"), "ImportError: .* is no libdem this module can use")
         self.assertRegex(self.fake(FAKE % "0.2.0"), "ImportError: .* is version 0.2.0, the module is for 0.1")
-        self.assertRegex(self.fake(FAKE % "0.1.9"), "ImportError: libdem 0.1.9 .* has no dem_error.file; install module")
-        everything = FAKE.replace("{\"dem_error\", \"code\", \"u32\", 4, 4}", ", ".join(
-            '{"dem_error", "%s", "u32", 4, 4}' % name for name in ("code", "line", "file", "text"))).replace("= 2", "= 5")
+        self.assertRegex(self.fake(FAKE % "0.1.9"), "ImportError: libdem 0.1.9 .* has no dem_error.file; install")
+        fields = ", ".join('{"dem_error", "%s", "u32", 4, 4}' % name for name in ("code", "line", "file", "text"))
+        everything = FAKE.replace('{"dem_error", "code", "u32", 4, 4}', fields).replace("= 2", "= 5")
         self.assertRegex(self.fake(everything % "0.1.9"), "ImportError: libdem 0.1.9 .* has no structure dem_ctx")
 
 

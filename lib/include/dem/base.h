@@ -99,7 +99,7 @@ DEM_API const char *dem_version(void);
 typedef struct dem_abi_row {
     const char *type;   ///< "dem_mesh"
     const char *field;  ///< "vertices"; "": the whole structure
-    const char *kind;   ///< bool, i32, u32, i64, u64, f64, char, pointer, or the structure it is; as many as fit in `size`
+    const char *kind;   ///< bool, i32, u32, i64, u64, f64, char, pointer or a structure; as many as fit in `size`
     size_t offset;      ///< in the structure [B]
     size_t size;        ///< [B]
 } dem_abi_row;

@@ -1,7 +1,7 @@
 """The shared libraries behind the module: found, checked, made callable.
 
-The structures are made from the table the library keeps of its own (dem_abi), so that they cannot differ from what it was
-compiled with; what the module needs and does not find there is refused when it is imported.
+The structures are made from the table the library keeps of its own (dem_abi), so that they cannot differ from what it
+was compiled with; what the module needs and does not find there is refused when it is imported.
 """
 import ctypes
 import logging
@@ -12,6 +12,8 @@ import types
 import numpy as np
 
 INTERFACE = "0.1"  # of the libraries this module fits, as in libdem.so.0.1
+
+_TOGETHER = "install module and library together"
 
 log = logging.getLogger("demclump")
 
@@ -159,7 +161,7 @@ def _rows(dem):
     except AttributeError as missing:
         raise ImportError(f"{dem._name} is no libdem this module can use: {missing}") from None
     if version.split(".")[:2] != INTERFACE.split("."):
-        raise ImportError(f"{dem._name} is version {version}, the module is for {INTERFACE}; install both from one version")
+        raise ImportError(f"{dem._name} is version {version}, the module is for {INTERFACE}; {_TOGETHER}")
     count = ctypes.c_size_t()
     rows = dem.dem_abi(ctypes.byref(count))
     structures = {}
@@ -194,11 +196,10 @@ def _structures(dem):
     version, tables = _rows(dem)
     for name, fields in _NEEDED.items():
         if name not in tables:
-            raise ImportError(f"libdem {version} ({dem._name}) has no structure {name}; install module and library together")
+            raise ImportError(f"libdem {version} ({dem._name}) has no structure {name}; {_TOGETHER}")
         missing = set(fields.split()) - {row[0] for row in tables[name][1]}
         if missing:
-            raise ImportError(f"libdem {version} ({dem._name}) has no {name}.{min(missing)}; "
-                              "install module and library together")
+            raise ImportError(f"libdem {version} ({dem._name}) has no {name}.{min(missing)}; {_TOGETHER}")
     known = dict(_KINDS)
     for name, (size, fields) in tables.items():
         known[name] = _structure(name, size, fields, known)
@@ -217,8 +218,9 @@ def _declare(library, prototypes):
     for name, prototype in prototypes.items():
         function = getattr(library, name, None)
         if function is None:
-            raise ImportError(f"{library._name} has no {name}; install module and library together")
-        made = [ctypes.POINTER(_PLAIN[word[:-1]]) if word.endswith("*") else _PLAIN[word] for word in prototype.split()]
+            raise ImportError(f"{library._name} has no {name}; {_TOGETHER}")
+        made = [ctypes.POINTER(_PLAIN[word[:-1]]) if word.endswith("*") else _PLAIN[word]
+                for word in prototype.split()]
         if prototype.startswith("status"):
             made.append(ctypes.POINTER(struct.error))
         function.restype, function.argtypes = made[0], made[1:]

@@ -113,14 +113,16 @@ def load(path):
 
 
 def pack(mesh, spheres=50, *, gap=None, max_spheres=None, seed=1, effort="default", moments="exact", side="both",
-         method=None, density=2650.0, mass_from="mesh", name=None, repair="auto", keep="one", threads=0, progress=None):
+         method=None, density=2650.0, mass_from="mesh", name=None, repair="auto", keep="one", threads=0,
+         progress=None):
     """Packs spheres into a mesh and measures the result: a Clump. The same for a seed and any number of threads.
 
     mesh: a Mesh (repaired first if repair() was not called) or the path of a file in metres.
-    spheres: at most so many; or gap: the fewest spheres, up to max_spheres, whose IoU gap is at most this fraction [-].
-    effort: fast, default or best. moments: what the union of the spheres shall have exactly of the grain: exact (volume,
-    centre, inertia), volume or free. side: both, inscribed or outer. method: a packer's name. density [kg/m^3].
-    mass_from: mesh or union. threads: 0 for all cores. progress(what, fraction): called from time to time; True stops.
+    spheres: at most so many; or gap: the fewest spheres, up to max_spheres, whose IoU gap is at most this fraction.
+    effort: fast, default or best. moments: what the union of the spheres shall have exactly of the grain: exact
+    (volume, centre, inertia), volume or free. side: both, inscribed or outer. method: a packer's name.
+    density [kg/m^3]. mass_from: mesh or union. threads: 0 for all cores. progress(what, fraction): called from time to
+    time; True stops.
     Raises InputError where the mesh cannot be used, UsageError for a parameter outside its range, Interrupted.
 
     >>> clump = pack(read_mesh("grain.obj"), spheres=100)
@@ -132,8 +134,8 @@ def pack(mesh, spheres=50, *, gap=None, max_spheres=None, seed=1, effort="defaul
         mesh = mesh.repair(repair, keep, threads=threads)
     context, handle, o = lib.Context(threads, progress), ctypes.c_void_p(), lib.call("dem_make_defaults")
     if spheres < 1 or seed < 0 or (gap is not None and not 0 < gap < 1):
-        raise lib.UsageError(f"spheres must be at least 1, seed at least 0 and gap between 0 and 1, not {spheres}, {seed} "
-                             f"and {gap}", 2)
+        raise lib.UsageError("spheres must be at least 1, seed at least 0 and gap between 0 and 1, "
+                             f"not {spheres}, {seed} and {gap}", 2)
     # the options hold pointers: these texts must live until the call is through
     texts = {"method": method, "name": name}
     if mesh.source:

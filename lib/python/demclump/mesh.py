@@ -33,7 +33,8 @@ class Mesh:
         if indices.size == 0:
             indices = indices.reshape(0, 3).astype(np.uint32)
         if indices.ndim != 2 or indices.shape[1] != 3 or indices.dtype.kind not in "iu":
-            raise ValueError(f"triangles must be whole numbers of the shape (m, 3), not {indices.dtype} {indices.shape}")
+            raise ValueError("triangles must be whole numbers of the shape (m, 3), "
+                             f"not {indices.dtype} {indices.shape}")
         if not np.isfinite(vertices).all():
             raise ValueError(f"vertex {np.flatnonzero(~np.isfinite(vertices).all(axis=1))[0]} is not finite")
         if indices.size and (indices.min() < 0 or indices.max() >= len(vertices)):
@@ -82,10 +83,10 @@ class Mesh:
     def repair(self, repair="auto", keep="one", wrap_detail=0.0, threads=0):
         """Welded, checked and repaired: a new mesh, one closed, outward-oriented surface per body, with a report.
 
-        repair: auto (mend what needs no guess), strict (refuse what needs more than welding), wrap (wrap whatever is there
-        in a closed surface) or none. keep: one (several bodies are an error), largest or all. wrap_detail: smallest
-        feature the wrap follows, as a part of the bounding diagonal [-]. Every repair is a warning to the logger
-        "demclump". Raises InputError where it encloses no volume or the volume would be a guess.
+        repair: auto (mend what needs no guess), strict (refuse what needs more than welding), wrap (wrap whatever is
+        there in a closed surface) or none. keep: one (several bodies are an error), largest or all. wrap_detail:
+        smallest feature the wrap follows, as a part of the bounding diagonal [-]. Every repair is a warning to the
+        logger "demclump". Raises InputError where it encloses no volume or the volume would be a guess.
         """
         context = lib.Context(threads, subject=self.source.file if self.source else None)
         options = lib.struct.repair_options(repair=lib.choice("repair", repair, _REPAIRS),
@@ -112,8 +113,9 @@ class Mesh:
     def solid(self):
         """Exact mass properties at unit density of a closed mesh.
 
-        volume [m^3], area [m^2], centre (3,) [m], inertia (3, 3) about the centre [m^5], principal (3,) ascending [m^5],
-        axes: quaternion w, x, y, z from the principal frame to that of the mesh. Raises InputError if it is not closed.
+        volume [m^3], area [m^2], centre (3,) [m], inertia (3, 3) about the centre [m^5], principal (3,) ascending
+        [m^5], axes: quaternion w, x, y, z from the principal frame to that of the mesh. Raises InputError if it is not
+        closed.
         """
         if not self.closed:
             raise lib.InputError("the mesh is not closed, so that it has no volume; repair() it first", 3)

@@ -44,7 +44,8 @@ class World:
         lib.call("dem_scene_read", self._context(), lib.path_bytes(scene),
                  (ctypes.c_char_p * (len(texts) + 1))(*texts, None), ctypes.byref(read), context=self._context)
         try:
-            lib.call("dem_world_create", self._context(), ctypes.byref(read), ctypes.byref(handle), context=self._context)
+            lib.call("dem_world_create", self._context(), ctypes.byref(read), ctypes.byref(handle),
+                     context=self._context)
         finally:
             lib.call("dem_scene_release", ctypes.byref(read))
         self._handle, self._measured, self._burst = handle.value, None, 1
@@ -92,7 +93,8 @@ class World:
         return lib.call("dem_world_critical_step", self._handle)
 
     def push(self, body, force=(0, 0, 0), moment=(0, 0, 0)):
-        """Adds a force through the centre of mass [N] and a moment [N m] to what acts on a body in the next step only."""
+        """Adds a force through the centre of mass [N] and a moment [N m] to what acts on a body, in the next step only.
+        """
         body, count = operator.index(body), self._bodies().count
         if not 0 <= body < count:
             raise IndexError(f"body {body} of {count}")
