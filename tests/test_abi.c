@@ -53,11 +53,13 @@ static void fields_cover_their_structure(void **state)
                 fail_msg("%s.%s: an array of pointers, or a kind the table does not know", row->type, row->field);
             // a missing field of eight bytes or more shows as a gap
             if (row->offset < end || row->offset - end >= 8)
-                fail_msg("%s: %zd bytes before %s", row->type, (ptrdiff_t)(row->offset - end), row->field);
+                fail_msg("%s: %zd bytes before %s are no field of lib/out/abi.c", row->type,
+                         (ptrdiff_t)(row->offset - end), row->field);
             end = row->offset + row->size;
         }
         if (end && (end > whole->size || whole->size - end >= 8))
-            fail_msg("%s: %zd bytes behind the last field", whole->type, (ptrdiff_t)(whole->size - end));
+            fail_msg("%s: %zd bytes behind the last are no field of lib/out/abi.c", whole->type,
+                     (ptrdiff_t)(whole->size - end));
     }
     assert_true(structures > 20);
 }

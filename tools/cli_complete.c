@@ -73,7 +73,7 @@ void cli_complete_bash(const cli_tool *tool, dem_buffer *text)
     dem_buffer_text(text, "    case $before in\n");
     const cli_option *option;
     for (size_t i = 0; (option = cli_option_at(tool, i)); i++)
-        if (option->argument)
+        if (option->argument && !cli_value_optional(option))
             put_bash_option(text, option);
     dem_buffer_text(text, "    esac\n    if [[ $word == -* ]]; then\n        mapfile -t COMPREPLY < <(compgen -W '");
     for (size_t i = 0; (option = cli_option_at(tool, i)); i++) {
@@ -100,11 +100,11 @@ void cli_complete_bash(const cli_tool *tool, dem_buffer *text)
 
 // ---- zsh
 
-static void put_zsh_values(dem_buffer *out, cli_values values, const char *name, const char *choices)
+static void put_zsh_values(dem_buffer *out, cli_values values, bool optional, const char *name, const char *choices)
 {
-    dem_buffer_text(out, ":");
+    dem_buffer_text(out, optional ? "::" : ":");
     for (const char *c = name; *c; c++)
-        dem_buffer_bytes(out, *c == ':' || *c == '|' || *c == '\'' ? " " : c, 1);
+        dem_buffer_bytes(out, strchr(":|'[]", *c) ? " " : c, 1);
     if (values == CLI_VALUES_CHOICE) {
         dem_buffer_text(out, ":(");
         put_choices(out, choices);
@@ -132,8 +132,8 @@ static void put_zsh_option(dem_buffer *out, const cli_option *option)
     put_escaped(out, option->help, "[]:\\", "'\\''");
     dem_buffer_text(out, "]");
     if (option->argument)
-        put_zsh_values(out, cli_values_of(option), option->kind == CLI_CHOICE ? option->name : option->argument,
-                       option->argument);
+        put_zsh_values(out, cli_values_of(option), cli_value_optional(option),
+                       option->kind == CLI_CHOICE ? option->name : option->argument, option->argument);
     else
         dem_buffer_text(out, "'");
     dem_buffer_text(out, " \\\n");
@@ -159,7 +159,7 @@ void cli_complete_zsh(const cli_tool *tool, dem_buffer *text)
         put_zsh_option(text, option);
     cli_values values = cli_operands(tool, operand, sizeof operand);
     dem_buffer_text(text, "        '*");
-    put_zsh_values(text, values, *operand ? operand : " ", NULL);
+    put_zsh_values(text, values, false, *operand ? operand : " ", NULL);
     dem_buffer_text(text, "\n}\n");
 }
 
@@ -171,7 +171,7 @@ static void put_fish_option(dem_buffer *out, const cli_option *option)
     if (option->letter)
         dem_buffer_print(out, " -s %c", option->letter);
     dem_buffer_print(out, " -l %s", option->name);
-    if (option->argument)
+    if (option->argument && !cli_value_optional(option))
         dem_buffer_text(out, values == CLI_VALUES_FILES ? " -r -F" : " -x");
     if (values == CLI_VALUES_CHOICE) {
         dem_buffer_text(out, " -a '");

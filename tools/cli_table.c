@@ -53,6 +53,11 @@ cli_values cli_values_of(const cli_option *option)
     return CLI_VALUES_ANY;
 }
 
+bool cli_value_optional(const cli_option *option)
+{
+    return option->argument && option->argument[0] == '[';
+}
+
 cli_values cli_operands(const cli_tool *tool, char *name, size_t size)
 {
     const char *usage = tool->usage;

@@ -19,6 +19,8 @@ const char *cli_next_line(const char *text, cli_line *line);
 /// What a value may be, for a shell that completes it.
 typedef enum cli_values { CLI_VALUES_ANY, CLI_VALUES_CHOICE, CLI_VALUES_FILES, CLI_VALUES_FOLDERS } cli_values;
 cli_values cli_values_of(const cli_option *option);
+/// The option may also stand without its value: "[A,B]".
+bool cli_value_optional(const cli_option *option);
 /// Of the operands, by the first word of the usage in capitals, which is put in `name`, "" where there is none.
 cli_values cli_operands(const cli_tool *tool, char *name, size_t size);
 
