@@ -80,18 +80,16 @@ static void put_option(dem_buffer *out, const cli_option *option)
 
 static void put_options(dem_buffer *out, const cli_tool *tool)
 {
-    bool headed = false;
     dem_buffer_text(out, ".SH OPTIONS\n");
     for (size_t i = 0; i < tool->option_count; i++) {
         const cli_option *option = &tool->options[i];
-        if (!option->name || !headed) {
-            dem_buffer_text(out, ".SS ");
-            put_all(out, option->name ? "Options" : option->help);
-            dem_buffer_text(out, "\n");
-        }
-        headed = true;
-        if (option->name)
+        if (option->name) {
             put_option(out, option);
+            continue;
+        }
+        dem_buffer_text(out, ".SS ");
+        put_all(out, option->help);
+        dem_buffer_text(out, "\n");
     }
     size_t count = 0;
     while (cli_option_at(tool, count))
