@@ -55,11 +55,15 @@ mkdir "$work/cmake"
 cat >"$work/cmake/CMakeLists.txt" <<'END'
 cmake_minimum_required(VERSION 3.18)
 project(use C)
+find_package(dem REQUIRED COMPONENTS shared)
+if(PNG_FOUND)
+  message(FATAL_ERROR "the shared libraries alone need nothing else")
+endif()
+add_executable(use_shared ../use.c)
+target_link_libraries(use_shared dem::demshape_shared m)
 find_package(dem REQUIRED)
 add_executable(use ../use.c)
 target_link_libraries(use dem::demshape m)
-add_executable(use_shared ../use.c)
-target_link_libraries(use_shared dem::demshape_shared m)
 END
 cmake -S "$work/cmake" -B "$work/cmake/build" -DCMAKE_PREFIX_PATH="$root" >"$work/log" 2>&1 &&
     cmake --build "$work/cmake/build" >>"$work/log" 2>&1 || { cat "$work/log"; exit 1; }
