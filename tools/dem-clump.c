@@ -10,7 +10,7 @@
 #include "base/units.h"
 #include "cli.h"
 #include "clump/pack.h"
-#include "clump_job.h"
+#include "clump_batch.h"
 #include "clump_report.h"
 #include "out/export.h"
 
@@ -36,6 +36,8 @@ static const char epilogue[] = "Examples:\n"
                                "  dem-clump grain.obj -e 3                     as many spheres as a 3 % gap needs\n"
                                "  dem-clump grain.obj -o - --format xyzr       spheres on standard output\n"
                                "  dem-clump scans/*.stl -o clumps/             a batch; the table on standard output\n"
+                               "  dem-clump convert rock.mol -o rock.json      clumps of other programs; see dem-clump "
+                               "convert --help\n"
                                "Exit status: 0 done, 1 failed, 2 wrong usage, 3 bad input, 4 cannot write, 130 interrupted.";
 
 // the choices as the library counts them
@@ -112,7 +114,7 @@ static const char *format_names(char text[256])
 
 // -o: files of one grain, or a folder (and a table) of several; says what does not go together
 // (`files`, room for all of them)
-static int sort_outputs(const cli_tool *tool, job_options *o, bool several, cli_texts *files, const char **table)
+int sort_outputs(const cli_tool *tool, job_options *o, bool several, cli_texts *files, const char **table)
 {
     char known[256];
     for (size_t i = 0; i < o->formats.count; i++)
@@ -143,7 +145,7 @@ static int sort_outputs(const cli_tool *tool, job_options *o, bool several, cli_
 }
 
 // output names of a batch: the input's name without folder and suffix, numbered where two are the same
-static char **grain_names(const cli_texts *inputs)
+char **grain_names(const cli_texts *inputs)
 {
     char **names = calloc(inputs->count, sizeof *names);
     for (size_t i = 0; names && i < inputs->count; i++) {
@@ -220,7 +222,7 @@ static int write_report(const cli_tool *tool, const arguments *a, const job_opti
     return text.size ? cli_print(tool, &text) : 0;
 }
 
-static int exit_status(const job_results *results, bool several)
+int exit_status(const job_results *results, bool several)
 {
     int status = 0;
     for (size_t i = 0; i < results->count; i++) {
@@ -267,8 +269,20 @@ static int run(const cli_tool *tool, const arguments *a, const cli_texts *inputs
     return status;
 }
 
+typedef struct subcommand {
+    const char *name;
+    int (*run)(int argc, char **argv);
+} subcommand;
+
+static const subcommand subcommands[] = {
+    {"convert", clump_convert},
+};
+
 int main(int argc, char **argv)
 {
+    for (size_t i = 0; argc > 1 && i < sizeof subcommands / sizeof *subcommands; i++)
+        if (strcmp(argv[1], subcommands[i].name) == 0)
+            return subcommands[i].run(argc - 1, argv + 1);
     arguments a = default_arguments();
     const cli_option options[] = {
         {.help = "Spheres"},
