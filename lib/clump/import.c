@@ -11,17 +11,17 @@
 #include "math/quat.h"
 #include "mesh/reader.h"
 
-extern const dem_importer dem_import_json, dem_import_kratos, dem_import_lammps, dem_import_liggghts, dem_import_deme,
-    dem_import_xyzr;
+extern const dem_importer dem_import_json, dem_import_kratos, dem_import_lammps, dem_import_deme, dem_import_xyzr,
+    dem_import_liggghts;
 
 // what tells itself from all others first
 static const dem_importer *const importers[] = {
-    &dem_import_json,      //
-    &dem_import_kratos,    //
-    &dem_import_lammps,    //
-    &dem_import_liggghts,  //
-    &dem_import_deme,      //
-    &dem_import_xyzr,      //
+    &dem_import_json,
+    &dem_import_kratos,
+    &dem_import_lammps,
+    &dem_import_deme,
+    &dem_import_xyzr,
+    &dem_import_liggghts,
     NULL,
 };
 

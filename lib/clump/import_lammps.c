@@ -94,7 +94,16 @@ static dem_status read_value(molecule *m)
     if (known || what.length == 0)
         return dem_reader_fail(&m->text.r, "%d numbers and '%s' do not belong together; correct the line", count,
                                dem_word_show(what).text);
-    return DEM_OK;  // bonds, angles and the like
+    double number;
+    if (dem_parse_double(what.text, what.text + what.length, &number))  // nan, inf
+        return dem_reader_fail(&m->text.r, "'%s' is not a finite number; correct it", dem_word_show(what).text);
+    static const char *const others[] = {"bonds", "angles", "dihedrals", "impropers", "fragments", "body"};
+    for (size_t i = 0; i < sizeof others / sizeof *others; i++)
+        if (dem_word_is(what, others[i]))
+            return DEM_OK;
+    dem_log(import->ctx, DEM_LOG_WARNING, "line %ld: '%s' is not known and is passed over", line,
+            dem_word_show(what).text);
+    return DEM_OK;
 }
 
 static dem_status read_index(molecule *m, size_t *index)

@@ -466,9 +466,9 @@ dem_status dem_import_clump(const dem_import *import, const dem_import_options *
     if (status == DEM_OK) {
         report_and_warn(&w, report ? report : &own);
         status = dem_clump_create(&w.def, clump, error);
-        if (status == DEM_BAD_INPUT && error && !error->file[0])
-            snprintf(error->file, sizeof error->file, "%s", import->file);
     }
+    if (status == DEM_BAD_INPUT && error && !error->file[0])
+        snprintf(error->file, sizeof error->file, "%s", import->file);
     dem_buffer_release(&w.parameters);
     dem_mesh_free(&w.mesh);
     dem_mesh_free(&w.surface);
