@@ -614,7 +614,7 @@ static void a_broken_file_is_refused_with_its_line(void **state)
         {"liggghts", FIX "spheres 0 0 0 1 scale -1\n", 1, "scale must be above 0"},
         {"liggghts", FIX "spheres 0 0 0 1 scale 1e100\n", 1, "scale makes"},
         {"liggghts", FIX "spheres 0 0 0 1 mass 0\n", 1, "mass must be above 0"},
-        {"liggghts", FIX "spheres 0 0 0 1 &\n mass 1 inertia_tensor 1 0 0 1 0\n", 3, "ends where"},
+        {"liggghts", FIX "spheres 0 0 0 1 &\n mass 1 inertia_tensor 1 0 0 1 0\n", 2, "ends where"},
         {"liggghts", FIX "spheres 0 0 0 1 &\n mass 1 inertia_tensor 1 0 0 1 0 4 use_density\n", 2, "no body"},
         {"liggghts", FIX "spheres file grain.multisphere\n", 1, "another file"},
         {"liggghts", FIX "spheres file\n", 1, "name of the sphere file"},
