@@ -11,6 +11,7 @@
 #include "cli.h"
 #include "clump/pack.h"
 #include "clump_batch.h"
+#include "clump_job.h"
 #include "clump_report.h"
 #include "out/export.h"
 
@@ -269,14 +270,12 @@ static int run(const cli_tool *tool, const arguments *a, const cli_texts *inputs
     return status;
 }
 
+// what stands before the options and has options of its own
 typedef struct subcommand {
     const char *name;
     int (*run)(int argc, char **argv);
 } subcommand;
-
-static const subcommand subcommands[] = {
-    {"convert", clump_convert},
-};
+static const subcommand subcommands[] = {{"convert", clump_convert}};
 
 int main(int argc, char **argv)
 {
