@@ -98,6 +98,7 @@ static void a_density_tells_what_volume_a_mass_stands_for(void **state)
     o.mass_from = DEM_IMPORT_UNION;
     c = convert("grain", MOLECULE, &o);
     check_close(c.def.mass, 2500 * c.def.union_volume, 1e-15);
+    check(c.heard.count == 0);  // what is not taken needs no warning
     check(c.def.mass_from == DEM_MASS_FROM_UNION && v3_norm(c.def.position) > 0);
     check_vec(c.def.union_centre, v3(0, 0, 0), 1e-17);
     check_way_back(&c.def, five, 5, 1e-17);
@@ -306,7 +307,7 @@ static void a_clump_of_ours_passes_through_to_the_last_bit(void **state)
     o = dem_import_defaults();
     o.unit = 1e-3;
     c = convert_as("x.json", text.data, text.size, NULL, &o);
-    check(c.status == DEM_BAD_INPUT && strstr(c.error.text, "leave --unit out"));
+    check(c.status == DEM_BAD_INPUT && strstr(c.error.text, "leave --unit and"));
     dem_buffer_release(&text);
     dem_clump_destroy(clump);
 }
@@ -381,6 +382,21 @@ static void what_is_exported_comes_back(void **state)
     dem_clump_destroy(clump);
 }
 
+// the union's own figures follow those of the clump under the same names
+static void the_first_figure_of_a_name_counts(void **state)
+{
+    (void)state;
+    converted c =
+        convert("x",
+                "# a b: 1 spheres of dem-clump 0.1.0\n# frame: principal; SI units (m, kg)\n# density [kg/m^3]: "
+                "2000\n# mass [kg]: 9000\n# the union has\n#   mass [kg]: 8000\n0 0 0 1\n",
+                NULL);
+    check(c.def.mass == 9000 && c.def.density == 2000 && c.def.volume == 4.5);
+    assert_string_equal(c.def.name, "a b");
+    warned(&c, "its mass is 7.43 % more");
+    done(&c);
+}
+
 static dem_mesh cube_mesh(double a)
 {
     static const uint32_t t[36] = {0, 2, 1, 0, 3, 2, 4, 5, 6, 4, 6, 7, 0, 1, 5, 0, 5, 4,
@@ -424,6 +440,39 @@ static void a_mesh_gives_fidelity_shape_and_surface(void **state)
     check_close(c.def.mass, 64 * 2650, 1e-13);
     done(&c);
     dem_mesh_free(&cube);
+}
+
+// a box of 3 x 2 x 1 and a clump that stands turned in its frame
+static void the_mesh_of_a_turned_clump_gives_its_own_axes(void **state)
+{
+    (void)state;
+    dem_mesh box = cube_mesh(1);
+    for (int i = 0; i < 8; i++)
+        box.vertices[i] = v3(5 + 3 * box.vertices[i].x, 2 * box.vertices[i].y, box.vertices[i].z);
+    dem_clump_def def = sample_clump();
+    def.position = v3(6, 1, 0.5);
+    dem_clump *clump = made_clump(&def);
+    dem_buffer text = {0};
+    dem_error error;
+    check_ok(dem_clump_encode(clump, &text, &error), error);
+    dem_import_options o = dem_import_defaults();
+    o.mesh = &box;
+    o.mass_from = DEM_IMPORT_MESH;
+    converted c = convert("x.json", text.data, &o);
+    check_vec(c.def.position, v3(6.5, 1, 0.5), 1e-14);
+    for (int i = 0; i < 3; i++) {
+        dem_vec3 axis = v3(i == 0, i == 1, i == 2);
+        check_near(fabs(v3_dot(quat_rotate(c.def.orientation, axis), axis)), 1, 1e-14);
+    }
+    dem_ball placed[SAMPLE_BALLS];
+    for (int i = 0; i < SAMPLE_BALLS; i++)
+        placed[i] =
+            (dem_ball){v3_add(def.position, quat_rotate(def.orientation, def.balls[i].centre)), def.balls[i].radius};
+    check_way_back(&c.def, placed, SAMPLE_BALLS, 1e-14);
+    done(&c);
+    dem_buffer_release(&text);
+    dem_clump_destroy(clump);
+    dem_mesh_free(&box);
 }
 
 // ---- what is odd
@@ -474,7 +523,9 @@ int main(void)
         cmocka_unit_test(a_clump_of_ours_passes_through_to_the_last_bit),
         cmocka_unit_test(a_clump_of_ours_takes_the_mass_of_its_union),
         cmocka_unit_test(what_is_exported_comes_back),
+        cmocka_unit_test(the_first_figure_of_a_name_counts),
         cmocka_unit_test(a_mesh_gives_fidelity_shape_and_surface),
+        cmocka_unit_test(the_mesh_of_a_turned_clump_gives_its_own_axes),
         cmocka_unit_test(odd_clumps_are_warned_of),
         cmocka_unit_test(a_good_clump_is_not_warned_of),
     };

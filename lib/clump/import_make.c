@@ -116,8 +116,8 @@ static dem_status weigh(work *w)
 {
     const dem_import_options *o = w->options;
     size_t count = w->import->count;
-    if (w->import->in_metres && o->unit != 1)
-        return refuse(w, 0, "says itself that it is in metres; leave --unit out");
+    if (w->import->in_metres && (o->unit != 1 || o->mass_unit != 1))
+        return refuse(w, 0, "says itself that it is in metres and kilograms; leave --unit and --mass-unit out");
     to_si(w);
     w->balls = dem_alloc(count, sizeof *w->balls);
     if (!w->balls)
@@ -231,6 +231,12 @@ static double largest_part(dem_sym3 t)
                   larger(fabs(t.xz), fabs(t.yz)));
 }
 
+// of what the clump does not take there is no need to warn
+static dem_log_level importance(const work *w)
+{
+    return w->options->mass_from == DEM_IMPORT_FILE ? DEM_LOG_WARNING : DEM_LOG_INFO;
+}
+
 static void warn_inertia(const work *w, double *residual)
 {
     const dem_import *in = w->import;
@@ -244,12 +250,12 @@ static void warn_inertia(const work *w, double *residual)
     double turned = largest_part(sym3_add(file, sym3_scale(balls, -1))) / (u->principal[2] / u->volume);
     *residual = larger(*residual, larger(worst, turned));
     if (worst > WORTH_A_WARNING)
-        dem_log(in->ctx, DEM_LOG_WARNING,
+        dem_log(in->ctx, importance(w),
                 "its moments of inertia differ from the union's by up to %.3g %%; if they are not the grain's own, use "
                 "--mass-from union",
                 100 * worst);
     else if (turned > WORTH_A_WARNING)
-        dem_log(in->ctx, DEM_LOG_WARNING,
+        dem_log(in->ctx, importance(w),
                 "its inertia has the moments of the union but other axes; check the order of its components, or use "
                 "--mass-from union");
 }
@@ -265,13 +271,13 @@ static void warn_mass(const work *w, dem_import_report *r)
     if (isfinite(volume))
         r->moment_residual = relative(volume, u->volume);
     if (r->moment_residual > WORTH_A_WARNING)
-        dem_log(ctx, DEM_LOG_WARNING,
+        dem_log(ctx, importance(w),
                 "its mass is %.3g %% %s than that of the union of its spheres; if it is not the grain's own, use "
                 "--mass-from union",
                 100 * r->moment_residual, volume > u->volume ? "more" : "less");
     r->centre_offset = v3_distance(w->centre, u->centre);
     if (r->centre_offset > WORTH_A_WARNING * size)
-        dem_log(ctx, DEM_LOG_WARNING,
+        dem_log(ctx, importance(w),
                 "its centre of mass is %.3g %% of its size away from that of the union; if it is not the grain's own, "
                 "use --mass-from union",
                 100 * r->centre_offset / size);
