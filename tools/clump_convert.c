@@ -15,7 +15,7 @@
 typedef struct arguments {
     cli_common common;
     cli_texts outputs, formats;
-    const char *from, *unit, *mass_unit, *mesh, *mass, *name;
+    const char *from, *unit, *mass_unit, *mesh, *mesh_unit, *mass, *name;
     double density, size;
     int mass_from, frame;
 } arguments;
@@ -28,6 +28,7 @@ typedef struct conversion {
     const dem_importer *importer;  // NULL: as the content says
     const char *mesh_file;
     dem_mesh mesh;
+    double mesh_unit;  ///< [m]
     char mesh_sha256[65];
     job_results results;
     dem_import_report *reports;  // of each result
@@ -51,7 +52,7 @@ static dem_status read_mesh(const dem_ctx *ctx, conversion *c, const char *path,
     c->mesh_file = path;
     DEM_TRY(dem_mesh_import(ctx, path, &c->mesh, error));
     DEM_TRY(dem_sha256_file(path, c->mesh_sha256, error));
-    dem_mesh_scale(&c->mesh, c->options.unit);
+    dem_mesh_scale(&c->mesh, c->mesh_unit);
     DEM_TRY(dem_mesh_repair(ctx, &c->mesh, &repair, &report, error));
     c->options.mesh = &c->mesh;
     return DEM_OK;
@@ -301,6 +302,9 @@ static int check(const cli_tool *tool, const arguments *a, const cli_texts *inpu
     }
     if (a->unit && dem_unit(a->unit, DEM_DIMENSION_LENGTH, &c->options.unit, &error) != DEM_OK)
         return cli_wrong_usage(tool, "--unit: %s", error.text);
+    c->mesh_unit = c->options.unit;
+    if (a->mesh_unit && dem_unit(a->mesh_unit, DEM_DIMENSION_LENGTH, &c->mesh_unit, &error) != DEM_OK)
+        return cli_wrong_usage(tool, "--mesh-unit: %s", error.text);
     if (a->mass_unit && dem_unit(a->mass_unit, DEM_DIMENSION_MASS, &c->options.mass_unit, &error) != DEM_OK)
         return cli_wrong_usage(tool, "--mass-unit: %s", error.text);
     if (a->mass && dem_quantity(a->mass, DEM_DIMENSION_MASS, &c->options.mass, &error) != DEM_OK)
@@ -317,7 +321,7 @@ static int run(const cli_tool *tool, const arguments *a, const cli_texts *inputs
     int status = check(tool, a, inputs, &c);
     if (status)
         return status;
-    c.options.unit_name = a->unit ? a->unit : "m";
+    c.options.unit_name = a->mesh_unit ? a->mesh_unit : a->unit ? a->unit : "m";
     c.options.density = a->density;
     c.options.size = a->size;
     c.options.mass_from = (dem_import_mass)a->mass_from;
@@ -364,8 +368,9 @@ int clump_convert(int argc, char **argv)
          0},
         {"unit", 0, CLI_TEXT, "UNIT", "length unit of the files (default m)", &a.unit, 0, 0},
         {"mass-unit", 0, CLI_TEXT, "UNIT", "mass unit of the files (default kg)", &a.mass_unit, 0, 0},
-        {"mesh", 0, CLI_TEXT, "FILE", "the grain's mesh in frame and unit of the file: measures fidelity and shape",
-         &a.mesh, 0, 0},
+        {"mesh", 0, CLI_TEXT, "FILE", "the grain's mesh in the frame of the file: measures fidelity and shape", &a.mesh,
+         0, 0},
+        {"mesh-unit", 0, CLI_TEXT, "UNIT", "length unit of the mesh (default: that of --unit)", &a.mesh_unit, 0, 0},
         {.help = "Clump"},
         {"name", 0, CLI_TEXT, "NAME", "name of the clump (default: the file's)", &a.name, 0, 0},
         {"density", 0, CLI_DENSITY, "RHO", "density, kg/m3 or with unit (default: the file's, else 2650)", &a.density,

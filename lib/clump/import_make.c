@@ -359,8 +359,8 @@ static dem_status measure(work *w)
     def->surface = w->surface;
     if (status == DEM_OK && def->fidelity.iou_gap > 0.5)
         dem_log(in->ctx, DEM_LOG_WARNING,
-                "the mesh and the spheres have little in common (IoU gap %.0f %%); is it in the frame and unit of the "
-                "spheres?",
+                "the mesh and the spheres have little in common (IoU gap %.0f %%); is it in their frame, and "
+                "--mesh-unit right?",
                 100 * def->fidelity.iou_gap);
     return status;
 }

@@ -74,6 +74,12 @@ grep -q '"surface"' measured.json || fail "no surface"
 prints '"mesh": "sand.obj"'
 run 0 dem-clump convert sand.json --mesh "$grains/sand.obj" -o measured.json --mass-from mesh --json
 prints '"mass_from": "mesh"'
+# in a unit of its own
+run 0 dem-clump "$grains/sand.obj" --unit mm -n 8 --effort fast -q -o sand.xyzr --frame mesh
+run 0 dem-clump convert sand.xyzr --mesh "$grains/sand.obj" --mesh-unit mm -o measured.json --json
+awk -v a="$(figure iou_gap)" 'BEGIN { exit !(a > 0.001 && a < 0.3) }' || fail "--mesh-unit: IoU gap $(figure iou_gap)"
+run 0 dem-clump convert sand.xyzr --mesh "$grains/sand.obj" -o measured.json
+mentions 'little in common'
 run 3 dem-clump convert sand.xyzr --mesh no.obj -o x.json
 mentions 'error: no.obj: no such file'
 
