@@ -1,4 +1,5 @@
-/// dem-clump convert: clumps of other programs into ours, and clumps of any kind into the formats of the engines.
+#include "clump_convert.h"
+
 #include <stdlib.h>
 #include <string.h>
 #include <sys/stat.h>
@@ -8,7 +9,7 @@
 #include "base/units.h"
 #include "clump/file.h"
 #include "clump/import.h"
-#include "clump_batch.h"
+#include "clump_outputs.h"
 #include "clump_report.h"
 
 // what the option table fills
@@ -94,12 +95,13 @@ static dem_status convert(const dem_ctx *ctx, conversion *c, const char *input, 
     return job_write(ctx, &c->job, r, options.mesh, error);
 }
 
-static void convert_file(const dem_ctx *ctx, conversion *c, const char *input, const char *name, size_t at)
+static void convert_file(const dem_ctx *ctx, conversion *c, const cli_texts *inputs, size_t at)
 {
-    job_result *r = &c->results.items[at];
+    job_result *r = &c->results.items[c->results.count++];
+    const char *input = inputs->items[at];
     dem_import import = {0};
     *r = (job_result){.input = input};
-    snprintf(r->name, sizeof r->name, "%s", name);
+    outputs_name(inputs, at, r->name);
     r->status = convert(ctx, c, input, r, &import, &c->reports[at], &r->error);
     c->kinds[at] = import.format ? import.format : "";
     if (r->status != DEM_OK && !r->error.file[0])
@@ -254,7 +256,7 @@ static int tell(const cli_tool *tool, conversion *c, cli_session *session, bool 
 
 // ---- all files
 
-static int convert_files(const cli_tool *tool, conversion *c, const cli_texts *inputs, char **names, const char *table)
+static int convert_files(const cli_tool *tool, conversion *c, const cli_texts *inputs, const char *table)
 {
     cli_session session;
     dem_error error;
@@ -272,7 +274,7 @@ static int convert_files(const cli_tool *tool, conversion *c, const cli_texts *i
     }
     for (size_t i = 0; status == 0 && i < inputs->count && !cli_interrupted(); i++) {
         dem_ctx ctx = cli_ctx(&session, strcmp(inputs->items[i], "-") ? inputs->items[i] : "standard input");
-        convert_file(&ctx, c, inputs->items[i], names[i], c->results.count++);
+        convert_file(&ctx, c, inputs, i);
         if (c->results.items[i].status != DEM_OK)
             cli_session_error(&session, &c->results.items[i].error);
         cli_job_done(&session);
@@ -280,7 +282,7 @@ static int convert_files(const cli_tool *tool, conversion *c, const cli_texts *i
     cli_end(&session);
     if (status == 0 && c->results.count)
         status = tell(tool, c, &session, several, table);
-    return status == 0 ? exit_status(&c->results, several) : status;
+    return status == 0 ? outputs_status(&c->results, several) : status;
 }
 
 static int check(const cli_tool *tool, const arguments *a, const cli_texts *inputs, conversion *c)
@@ -328,21 +330,17 @@ static int run(const cli_tool *tool, const arguments *a, const cli_texts *inputs
     c.options.name = a->name;
     c.job = (job_options){.frame = (dem_frame)a->frame, .outputs = a->outputs, .formats = a->formats};
     cli_texts files = {.items = calloc(a->outputs.count + 1, sizeof *files.items)};
-    char **names = grain_names(inputs);
     c.results.items = calloc(inputs->count, sizeof *c.results.items);
     c.reports = calloc(inputs->count, sizeof *c.reports);
     c.kinds = calloc(inputs->count, sizeof *c.kinds);
-    if (!files.items || !names || !c.results.items || !c.reports || !c.kinds)
+    if (!files.items || !c.results.items || !c.reports || !c.kinds)
         status = cli_error(tool, &(dem_error){.code = DEM_NO_MEMORY, .text = "out of memory; convert fewer files"});
     else
-        status = sort_outputs(tool, &c.job, inputs->count > 1, &files, &table);
+        status = outputs_sort(tool, &c.job, inputs->count > 1, &files, &table);
     if (status == 0)
-        status = convert_files(tool, &c, inputs, names, table);
+        status = convert_files(tool, &c, inputs, table);
     job_results_release(&c.results);
     dem_mesh_free(&c.mesh);
-    for (size_t i = 0; names && i < inputs->count; i++)
-        free(names[i]);
-    free(names);
     free(files.items);
     free(c.reports);
     free(c.kinds);

@@ -10,7 +10,7 @@
 #include "base/units.h"
 #include "cli.h"
 #include "clump/pack.h"
-#include "clump_batch.h"
+#include "clump_convert.h"
 #include "clump_job.h"
 #include "clump_report.h"
 #include "out/export.h"
@@ -37,8 +37,7 @@ static const char epilogue[] = "Examples:\n"
                                "  dem-clump grain.obj -e 3                     as many spheres as a 3 % gap needs\n"
                                "  dem-clump grain.obj -o - --format xyzr       spheres on standard output\n"
                                "  dem-clump scans/*.stl -o clumps/             a batch; the table on standard output\n"
-                               "  dem-clump convert rock.mol -o rock.json      clumps of other programs; see dem-clump "
-                               "convert --help\n"
+                               "  dem-clump convert rock.mol -o rock.json      a clump of another program\n"
                                "Exit status: 0 done, 1 failed, 2 wrong usage, 3 bad input, 4 cannot write, 130 interrupted.";
 
 // the choices as the library counts them
@@ -115,7 +114,7 @@ static const char *format_names(char text[256])
 
 // -o: files of one grain, or a folder (and a table) of several; says what does not go together
 // (`files`, room for all of them)
-int sort_outputs(const cli_tool *tool, job_options *o, bool several, cli_texts *files, const char **table)
+static int sort_outputs(const cli_tool *tool, job_options *o, bool several, cli_texts *files, const char **table)
 {
     char known[256];
     for (size_t i = 0; i < o->formats.count; i++)
@@ -146,7 +145,7 @@ int sort_outputs(const cli_tool *tool, job_options *o, bool several, cli_texts *
 }
 
 // output names of a batch: the input's name without folder and suffix, numbered where two are the same
-char **grain_names(const cli_texts *inputs)
+static char **grain_names(const cli_texts *inputs)
 {
     char **names = calloc(inputs->count, sizeof *names);
     for (size_t i = 0; names && i < inputs->count; i++) {
@@ -223,7 +222,7 @@ static int write_report(const cli_tool *tool, const arguments *a, const job_opti
     return text.size ? cli_print(tool, &text) : 0;
 }
 
-int exit_status(const job_results *results, bool several)
+static int exit_status(const job_results *results, bool several)
 {
     int status = 0;
     for (size_t i = 0; i < results->count; i++) {
