@@ -237,8 +237,17 @@ static dem_log_level importance(const work *w)
     return w->options->mass_from == DEM_IMPORT_FILE ? DEM_LOG_WARNING : DEM_LOG_INFO;
 }
 
+static const char *at_line(char text[32], long line)
+{
+    *text = 0;
+    if (line > 0)
+        snprintf(text, 32, "line %ld: ", line);
+    return text;
+}
+
 static void warn_inertia(const work *w, double *residual)
 {
+    char where[32];
     const dem_import *in = w->import;
     const dem_solid *u = &w->balls_union.solid;
     double mass = in->inertia_of_unit_mass ? 1 : isfinite(w->mass) ? w->mass : w->def.mass, worst = 0;
@@ -251,19 +260,21 @@ static void warn_inertia(const work *w, double *residual)
     *residual = larger(*residual, larger(worst, turned));
     if (worst > WORTH_A_WARNING)
         dem_log(in->ctx, importance(w),
-                "its moments of inertia differ from the union's by up to %.3g %%; if they are not the grain's own, use "
-                "--mass-from union",
-                100 * worst);
+                "%sits moments of inertia differ from the union's by up to %.3g %%; if they are not the grain's own, "
+                "use --mass-from union",
+                at_line(where, in->inertia_line), 100 * worst);
     else if (turned > WORTH_A_WARNING)
         dem_log(in->ctx, importance(w),
-                "its inertia has the moments of the union but other axes; check the order of its components, or use "
-                "--mass-from union");
+                "%sits inertia has the moments of the union but other axes; check the order of its components, or use "
+                "--mass-from union",
+                at_line(where, in->inertia_line));
 }
 
 static void warn_mass(const work *w, dem_import_report *r)
 {
     const dem_ctx *ctx = w->import->ctx;
     const dem_solid *u = &w->balls_union.solid;
+    char where[32];
     double size = cbrt(6 / DEM_PI * u->volume);
     double volume = isfinite(w->volume)                      ? w->volume
                     : w->options->density > 0 && w->mass > 0 ? w->mass / w->options->density
@@ -272,9 +283,9 @@ static void warn_mass(const work *w, dem_import_report *r)
         r->moment_residual = relative(volume, u->volume);
     if (r->moment_residual > WORTH_A_WARNING)
         dem_log(ctx, importance(w),
-                "its mass is %.3g %% %s than that of the union of its spheres; if it is not the grain's own, use "
+                "%sits mass is %.3g %% %s than that of the union of its spheres; if it is not the grain's own, use "
                 "--mass-from union",
-                100 * r->moment_residual, volume > u->volume ? "more" : "less");
+                at_line(where, w->import->mass_line), 100 * r->moment_residual, volume > u->volume ? "more" : "less");
     r->centre_offset = v3_distance(w->centre, u->centre);
     if (r->centre_offset > WORTH_A_WARNING * size)
         dem_log(ctx, importance(w),

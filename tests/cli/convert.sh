@@ -36,7 +36,7 @@ printf '# two balls, mm\n-5 0 0 10\r\n5,0,0,10' >"two balls.txt"
 run 0 dem-clump convert rock.mol -o rock.json
 prints 'union of spheres'
 prints 'wrote rock.json'
-mentions "warning: rock.mol: its moments of inertia differ"
+mentions "warning: rock.mol: line 6: its moments of inertia differ"
 [ "$(wc -l <out)" -le 20 ] || fail "more than a screen"
 run 0 dem-clump convert rock.mol -o rock.json --json
 is mass 0.02
