@@ -81,7 +81,7 @@ offers 'best default fast' dem-clump --effort ''
 offers 'fast' dem-clump a.stl --effort f
 offers 'best default fast' dem-clump --effort =
 offers 'best' dem-clump --effort = b
-offers 'a.stl b.obj deep' dem-clump ''
+offers 'a.stl b.obj deep' dem-run ''
 offers 'a.stl' dem-clump -n 5 a
 offers 'a.stl b.obj deep' dem-clump a.stl -o ''
 offers '' dem-clump --spheres ''
@@ -93,6 +93,8 @@ offers '' dem-run -D ''
 offers 'a.stl b.obj deep' dem-run --resume ''
 offers '--help' dem-run --he
 # a subcommand is found by its function
+offers 'convert' dem-clump conv
+offers '--json' dem-clump convert --js
 _dem_grain_sieve() { COMPREPLY=(of the sieve); }
 offers 'sieve' dem-grain s
 offers 'of sieve the' dem-grain sieve ''
