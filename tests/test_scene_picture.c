@@ -46,8 +46,8 @@ static dem_image drawn(const dem_body_view *bodies, const dem_picture_options *o
     dem_ctx ctx = {.threads = threads};
     if (!DEM_EMBREE)
         skip();
-    check_ok(dem_scene_picture_render(&ctx, bodies, (const dem_clump *const *)clumps, VIEW_SHAPES, options, &image,
-                                      view, &error),
+    check_ok(dem_scene_picture_render(&ctx, bodies, (const dem_clump *const *)clumps, VIEW_SHAPES, options, NULL,
+                                      &image, view, &error),
              error);
     check(image.width == options->width && image.height == options->height);
     return image;

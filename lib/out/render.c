@@ -22,8 +22,8 @@ enum {
     BORDER_LOW = 1,  // pixels about a tile that its averages take in
     BORDER_HIGH = 2,
     EDGE = TILE + BORDER_LOW + BORDER_HIGH,
-    PATCHES = 4,        // surfaces in one pixel
-    MORE_SAMPLES = 15,  // of a pixel at an edge
+    PATCHES = 4,   // surfaces in one pixel
+    SAMPLES = 16,  // of a pixel at an edge, if nothing is asked for
     STEP = 4,           // pixels between points of the ground's lattice
     NODES = TILE / STEP + 3,
 };
@@ -108,9 +108,10 @@ static void take_samples(const dem_stage *s, tile *t)
             for (int k = 0; k < 9; k++)
                 t->edges[y][x] |= !same_sight(s, &t->cells[y][x], &t->cells[y - 1 + k / 3][x - 1 + k % 3]);
         }
+    size_t more = (size_t)(s->scene->samples > 0 ? s->scene->samples : SAMPLES) - 1;
     for (int y = 1; y < height - 1; y++)
         for (int x = 1; x < width - 1; x++)
-            for (size_t i = 0; t->edges[y][x] && i < MORE_SAMPLES; i++) {
+            for (size_t i = 0; t->edges[y][x] && i < more; i++) {
                 double u, v;
                 dem_even_point(i, &u, &v);
                 take_sample(s, left + x + u, top + y + v, &t->cells[y][x]);
@@ -179,24 +180,18 @@ static float ground_light(const dem_stage *s, tile *t, int x, int y)
     return sum;
 }
 
-static uint8_t to_srgb(float linear)
-{
-    float x = linear < 0 ? 0 : linear > 1 ? 1 : linear;
-    x = x <= 0.0031308f ? 12.92f * x : 1.055f * powf(x, 1 / 2.4f) - 0.055f;
-    return (uint8_t)(255 * x + 0.5f);
-}
-
 // (x, y) in the tile
 static void finish_pixel(const dem_stage *s, tile *t, int x, int y, uint8_t *rgb)
 {
     const cell *c = &t->cells[y + BORDER_LOW][x + BORDER_LOW];
+    const dem_colour white = {1, 1, 1}, back = s->scene->background ? *s->scene->background : white;
     float sum[3] = {0}, sky = (float)c->weight;
     for (int k = 0; k < c->count; k++) {
         const patch *p = &c->patches[k];
-        dem_colour colour = {1, 1, 1}, light;
+        dem_colour colour = back, light;
         if (p->spot.body == STAGE_GROUND) {
-            float white = ground_light(s, t, x, y);
-            light = (dem_colour){white, white, white};
+            float bright = ground_light(s, t, x, y);
+            light = (dem_colour){bright, bright, bright};
         } else {
             colour = albedo(s, &p->spot);
             light = average_light(s, t, x + BORDER_LOW, y + BORDER_LOW, &p->spot);
@@ -208,8 +203,9 @@ static void finish_pixel(const dem_stage *s, tile *t, int x, int y, uint8_t *rgb
         sky -= w;
     }
     const float veil[3] = {c->veil.light.r, c->veil.light.g, c->veil.light.b}, all = (float)c->weight;
-    for (int k = 0; k < 3; k++)  // the sky behind it all is white
-        rgb[k] = to_srgb(((sum[k] + sky) / all * c->veil.through + veil[k]) / all);
+    const float behind[3] = {back.r, back.g, back.b};
+    for (int k = 0; k < 3; k++)
+        rgb[k] = dem_colour_srgb(((sum[k] + sky * behind[k]) / all * c->veil.through + veil[k]) / all);
 }
 
 static void render_tile(const dem_stage *s, tile *t, dem_image *image)

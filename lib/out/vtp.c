@@ -16,10 +16,10 @@ typedef struct writer {
 } writer;
 
 const dem_vtp_kind dem_vtp_kinds[DEM_VTP_TYPES] = {[DEM_VTP_FLOAT64] = {"Float64", 8},
-             [DEM_VTP_FLOAT32] = {"Float32", 4},
-             [DEM_VTP_INT32] = {"Int32", 4},
-             [DEM_VTP_UINT32] = {"UInt32", 4},
-             [DEM_VTP_INT64] = {"Int64", 8}};
+                                                   [DEM_VTP_FLOAT32] = {"Float32", 4},
+                                                   [DEM_VTP_INT32] = {"Int32", 4},
+                                                   [DEM_VTP_UINT32] = {"UInt32", 4},
+                                                   [DEM_VTP_INT64] = {"Int64", 8}};
 
 static void put_xml(writer *w, const char *text)
 {
