@@ -12,6 +12,16 @@ static const double GAP = 0.45;         // between a tick and its number
 static const double LINE_HEIGHT = 1.9;  // from line to line
 static const double TIP = 1.1;          // the pointed ends of a bar that goes on
 
+double dem_label_margin(double size)
+{
+    return 1.4 * size;
+}
+
+double dem_foot_height(double size)
+{
+    return 3.2 * size;
+}
+
 // ---- numbers
 
 // the least of 1, 2, 5 times a power of ten that is not below x

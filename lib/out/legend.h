@@ -34,6 +34,10 @@ typedef struct dem_legend {
     size_t count;
 } dem_legend;
 
+/// Free about what is written, and height of a line of it at the foot of a picture, for letters of a size [pixels].
+double dem_label_margin(double size);
+double dem_foot_height(double size);
+
 /// Breadth it needs for letters of a size [pixels]; does not depend on the range, so that a sequence of pictures can be
 /// laid out before its range is known.
 double dem_legend_width(const dem_legend *legend, double size);

@@ -43,6 +43,9 @@ typedef struct dem_camera {
     double margin;     ///< [-]
 } dem_camera;
 
+/// One that looks from an azimuth about `up`, from x (where that is not up), and an elevation above the ground.
+dem_camera dem_camera_around(dem_vec3 up, double azimuth_deg, double elevation_deg, double field_deg, double margin);
+
 /// A camera in its place. Pixel (0, 0) is the upper left one, its centre at (0.5, 0.5).
 typedef struct dem_view {
     dem_vec3 centre;              ///< in the middle of the picture [m]

@@ -17,9 +17,6 @@ static const double LEVEL = 0.999;       // cosine of the tilt up to which a flo
 static const float GLASS_CLEAR = 0.86f;  // light that passes straight through a wall
 static const dem_colour GLASS = {0.62f, 0.72f, 0.80f};
 
-// of what is written, in heights of a capital letter
-static const double SIDE = 1.4;            // free about it
-static const double FOOT = 3.2;            // height of the line at the foot of the picture
 static const double SMALL = 0.016;         // height of a capital letter, over the size of the picture
 static const double LEGEND_HEIGHT = 0.62;  // over that of the picture
 
@@ -217,16 +214,6 @@ static dem_status place_walls(model *m, dem_box bodies, dem_error *error)
 
 // ---- the camera
 
-static dem_camera choose_camera(const dem_picture_options *o, dem_vec3 up)
-{
-    double azimuth = o->azimuth_deg * DEM_PI / 180, elevation = o->elevation_deg * DEM_PI / 180;
-    dem_vec3 right = v3_normal_to(up), ahead = v3_cross(up, right);
-    dem_vec3 level = v3_along(v3_scale(right, cos(azimuth)), sin(azimuth), ahead);
-    dem_vec3 eye = v3_along(v3_scale(level, cos(elevation)), sin(elevation), up);
-    return (dem_camera){
-        .forward = v3_scale(eye, -1), .up = up, .field_deg = o->parallel ? 0 : FIELD_DEG, .margin = MARGIN};
-}
-
 static dem_view choose_view(const model *m, const dem_picture_span *span)
 {
     const dem_picture_options *o = m->options;
@@ -296,8 +283,8 @@ static dem_status lay_out(const model *m, layout *l, dem_error *error)
                                  .palette = &m->palette};
     l->has_legend = m->field.values || l->names;
     // a legend may take a third of the picture, the line at its foot a quarter
-    double strip = l->has_legend ? dem_legend_width(&l->legend, l->size) + 2 * SIDE * l->size : 0;
-    double foot = FOOT * l->size;
+    double strip = l->has_legend ? dem_legend_width(&l->legend, l->size) + 2 * dem_label_margin(l->size) : 0;
+    double foot = dem_foot_height(l->size);
     l->width -= (int)fmin(strip, o->width / 3.0);
     l->height -= (int)fmin(foot, o->height / 4.0);
     return DEM_OK;
@@ -319,8 +306,8 @@ static dem_status write_legend(const model *m, const layout *l, dem_image *image
         legend.above |= !is_hidden(m, i) && m->field.values[i] > m->high;
     }
     double height = fmin(LEGEND_HEIGHT * l->height, 40 * l->size);
-    return dem_legend_draw(image, &legend, l->width + SIDE * l->size, (l->height - height) / 2, height, l->size, ink,
-                           error);
+    return dem_legend_draw(image, &legend, l->width + dem_label_margin(l->size), (l->height - height) / 2, height,
+                           l->size, ink, error);
 }
 
 static dem_status write_labels(const model *m, const layout *l, const dem_view *view, const dem_picture_span *span,
@@ -328,13 +315,13 @@ static dem_status write_labels(const model *m, const layout *l, const dem_view *
 {
     const dem_picture_options *o = m->options;
     dem_rgb ink = dem_ink_on(o->background);
-    double base = image->height - SIDE * l->size;
-    DEM_TRY(dem_scale_bar_draw(image, SIDE * l->size, base, 0.25 * l->width, view->pixel, "m", l->size, ink, error));
+    double side = dem_label_margin(l->size), base = image->height - side;
+    DEM_TRY(dem_scale_bar_draw(image, side, base, 0.25 * l->width, view->pixel, "m", l->size, ink, error));
     if (isfinite(o->time)) {
         char time[DEM_LABEL_TEXT], text[DEM_LABEL_TEXT + 8];
         const dem_text_style style = {.size = l->size, .ink = ink, .align = DEM_ALIGN_RIGHT};
         snprintf(text, sizeof text, "t = %s", dem_quantity_text(o->time, "s", fmax(span->end, o->time), time));
-        DEM_TRY(dem_text_draw(image, l->width - SIDE * l->size, base, &style, text, error));
+        DEM_TRY(dem_text_draw(image, l->width - side, base, &style, text, error));
     }
     return l->has_legend ? write_legend(m, l, image, ink, error) : DEM_OK;
 }
@@ -384,7 +371,8 @@ static dem_status measure(model *m, const layout *l, dem_picture_span *span, dem
     const dem_picture_options *o = m->options;
     double low, high;
     if (!span->begun) {
-        dem_camera camera = choose_camera(o, m->up);
+        dem_camera camera =
+            dem_camera_around(m->up, o->azimuth_deg, o->elevation_deg, o->parallel ? 0 : FIELD_DEG, MARGIN);
         *span =
             (dem_picture_span){.begun = true, .bodies = box_empty(), .low = INFINITY, .high = -INFINITY, .end = NAN};
         dem_fit_begin(&span->fit, &camera, l->width, l->height);

@@ -6,6 +6,15 @@
 
 enum { MANY_PARTS = 20000000 };
 
+dem_camera dem_camera_around(dem_vec3 up, double azimuth_deg, double elevation_deg, double field_deg, double margin)
+{
+    double azimuth = azimuth_deg * DEM_PI / 180, elevation = elevation_deg * DEM_PI / 180;
+    dem_vec3 right = v3_normal_to(up), ahead = v3_cross(up, right);
+    dem_vec3 level = v3_along(v3_scale(right, cos(azimuth)), sin(azimuth), ahead);
+    dem_vec3 eye = v3_along(v3_scale(level, cos(elevation)), sin(elevation), up);
+    return (dem_camera){.forward = v3_scale(eye, -1), .up = up, .field_deg = field_deg, .margin = margin};
+}
+
 static dem_vec3 placed(const dem_render_body *body, dem_vec3 point)
 {
     return v3_along(body->position, body->scale, quat_rotate(body->orientation, point));
