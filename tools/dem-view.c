@@ -241,6 +241,19 @@ static dem_status draw_sequence(const dem_ctx *ctx, const view_choices *c, const
 
 // ---- a sheet
 
+// a sheet that is rather broad than high, with few empty cells
+static double choose_columns(double count, double aspect)
+{
+    double best = count, least = INFINITY;
+    for (double columns = 1; columns <= count && columns <= 1000; columns++) {
+        double rows = ceil(count / columns), off = fabs(log(columns * aspect / rows / 1.35));
+        double cost = off + (rows > 1 ? 1.5 * (rows * columns - count) / count : 0);
+        if (cost < least)
+            best = columns, least = cost;
+    }
+    return best;
+}
+
 // as large as the number of cells asks for
 static dem_sheet divide(const view_choices *c, const view_inputs *all)
 {
@@ -249,8 +262,7 @@ static dem_sheet divide(const view_choices *c, const view_inputs *all)
     for (size_t i = 0; i < all->count; i++)
         runs += all->items[i].kind != VIEW_GRAIN;
     double aspect = runs ? 0.75 : 1;
-    double n = (double)all->count, columns = a->columns ? (double)a->columns : ceil(sqrt(1.4 / aspect * n));
-    columns = fmin(columns, n);
+    double n = (double)all->count, columns = a->columns ? fmin((double)a->columns, n) : choose_columns(n, aspect);
     double cell = fmin(fmax(2400 / columns, 160), runs ? 900 : 700);
     int width = c->width ? c->width : (int)(columns * cell);
     int height = c->height ? c->height : (int)(ceil(n / columns) * cell * (1 / aspect + (a->no_names ? 0 : 0.12)));
@@ -282,8 +294,13 @@ static dem_status common_pixel(const dem_ctx *ctx, const view_choices *c, const 
 static dem_status draw_cells(const dem_ctx *ctx, const view_choices *c, const view_inputs *all, const dem_sheet *sheet,
                              double pixel, dem_image *image, dem_error *error)
 {
+    view_choices cell = *c;
+    view_arguments arguments = *c->arguments;
     steps s = {ctx, 0, all->count};
     dem_ctx step = stepped(ctx, &s);
+    arguments.label_size = arguments.label_size > 0 ? arguments.label_size : fmax(round(0.7 * sheet->text_size), 8);
+    cell.arguments = &arguments;
+    c = &cell;
     for (; s.done < all->count; s.done++) {
         const view_input *in = &all->items[s.done];
         dem_image part = {0};

@@ -129,6 +129,25 @@ static dem_status add_vtp(const char *path, view_inputs *all, dem_error *error)
     return add(all, VIEW_FRAME, strdup(path), directory.data, error);
 }
 
+// names that stand for several files get their suffixes back
+static dem_status tell_apart(view_inputs *all, dem_error *error)
+{
+    for (size_t i = 0; i < all->count; i++) {
+        bool twice = false;
+        for (size_t k = 0; k < all->count && !twice; k++)
+            twice = k != i && strncmp(all->items[k].name, all->items[i].name, strlen(all->items[i].name)) == 0 &&
+                    strcspn(all->items[k].name, ".") == strcspn(all->items[i].name, ".");
+        if (!twice || all->items[i].kind == VIEW_RUN)
+            continue;
+        char *whole = strdup(dem_file_name(all->items[i].path));
+        if (!whole)
+            return dem_fail_memory(error);
+        free(all->items[i].name);
+        all->items[i].name = whole;
+    }
+    return DEM_OK;
+}
+
 dem_status view_find(const cli_texts *operands, view_inputs *all, dem_error *error)
 {
     struct stat about;
@@ -142,7 +161,7 @@ dem_status view_find(const cli_texts *operands, view_inputs *all, dem_error *err
         else
             DEM_TRY(add(all, VIEW_GRAIN, strdup(path), NULL, error));
     }
-    return DEM_OK;
+    return tell_apart(all, error);
 }
 
 void view_inputs_release(view_inputs *all)

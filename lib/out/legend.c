@@ -231,7 +231,7 @@ dem_status dem_legend_draw(dem_image *image, const dem_legend *l, double left, d
     for (int k = 0; k < count; k++)
         DEM_TRY(dem_text_draw(image, left, top + (1 + LINE_HEIGHT * 0.85 * k) * size, &style, lines[k], error));
     double bar_top =
-        round(top + (count ? 1.7 + LINE_HEIGHT * 0.85 * (count - 1) : 0.5) * size + (l->above ? TIP * size : 0));
+        round(top + (count ? 2.2 + LINE_HEIGHT * 0.85 * (count - 1) : 0.5) * size + (l->above ? TIP * size : 0));
     double bar_bottom = round(top + height - 0.5 * size - (l->below ? TIP * size : 0));
     if (bar_bottom - bar_top < 2 * size)
         return DEM_OK;

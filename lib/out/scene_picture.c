@@ -18,6 +18,7 @@ static const float GLASS_CLEAR = 0.86f;  // light that passes straight through a
 static const dem_colour GLASS = {0.62f, 0.72f, 0.80f};
 
 static const double SMALL = 0.016;         // height of a capital letter, over the size of the picture
+static const double NEARLY = 0.06;         // over the range
 static const double LEGEND_HEIGHT = 0.62;  // over that of the picture
 
 enum { MOST_PIXELS = 20000 };  // of a side
@@ -342,14 +343,28 @@ static dem_status check_options(const dem_picture_options *o, dem_error *error)
     return DEM_OK;
 }
 
+// an end that nearly is a round number becomes one
+static void round_ends(double *low, double *high)
+{
+    double ticks[DEM_TICKS], step, span = *high - *low;
+    if (!(span > 0) || dem_ticks(*low, *high, 8, false, ticks, &step) < 2)
+        return;
+    double below = floor(*low / step) * step, above = ceil(*high / step) * step;
+    *low = *low - below < NEARLY * span ? below : *low;
+    *high = above - *high < NEARLY * span ? above : *high;
+}
+
 dem_picture_map dem_picture_range(const dem_picture_options *o, const dem_picture_span *span, double *low, double *high)
 {
     bool none = !(span->low <= span->high), chosen = isnan(o->low) && isnan(o->high);
-    *low = !isnan(o->low) ? o->low : none ? 0 : span->low;
-    *high = !isnan(o->high) ? o->high : none ? 0 : span->high;
+    double near_low = none ? 0 : span->low, near_high = none ? 0 : span->high;
+    if (!none)
+        round_ends(&near_low, &near_high);
+    *low = isnan(o->low) ? near_low : o->low;
+    *high = isnan(o->high) ? near_high : o->high;
     bool split = *low < 0 && *high > 0;
     bool may_diverge = o->map == DEM_PICTURE_MAP_AUTO || o->map == DEM_PICTURE_MAP_DIVERGING;
-    if (chosen && split && may_diverge) {  // white is zero
+    if (chosen && split && may_diverge && fmin(-*low, *high) > NEARLY * (*high - *low)) {  // white is zero
         *high = fmax(-*low, *high);
         *low = -*high;
     }

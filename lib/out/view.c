@@ -24,52 +24,74 @@ typedef void visitor(void *user, dem_vec3 centre, double radius);
 
 static size_t parts(const dem_render_shape *shape)
 {
-    return shape->mesh ? 3 * shape->mesh->triangle_count : shape->ball_count;
+    return shape->mesh ? shape->mesh->vertex_count : shape->ball_count;
 }
 
-// a part of a shape as a ball: a corner of a triangle, or a ball
+// a part of a shape as a ball: a vertex, or a ball
 static dem_ball part(const dem_render_shape *shape, size_t k)
 {
-    return shape->mesh ? (dem_ball){shape->mesh->vertices[shape->mesh->triangles[k]], 0} : shape->balls[k];
+    return shape->mesh ? (dem_ball){shape->mesh->vertices[k], 0} : shape->balls[k];
 }
 
-static dem_ball bounding_ball(const dem_render_shape *shape)
+// what holds a shape; NULL: there was no memory, and all its parts do
+typedef struct hold {
+    dem_ball *balls;
+    size_t count;
+} hold;
+
+// all parts but the vertices that no triangle uses
+static hold hold_shape(const dem_render_shape *shape)
+{
+    size_t count = parts(shape);
+    hold h = {.balls = dem_alloc(count, sizeof *h.balls)};
+    unsigned char *used = dem_alloc_zero(count, 1);
+    for (size_t t = 0; used && shape->mesh && t < 3 * shape->mesh->triangle_count; t++)
+        used[shape->mesh->triangles[t]] = 1;
+    for (size_t k = 0; h.balls && k < count; k++)
+        if (!shape->mesh || !used || used[k])
+            h.balls[h.count++] = part(shape, k);
+    free(used);
+    return h;
+}
+
+// one ball instead of many
+static void bound(hold *h)
 {
     dem_box box = box_empty();
-    for (size_t k = 0; k < parts(shape); k++)
-        box = box_with(box, part(shape, k).centre);
+    for (size_t k = 0; k < h->count; k++)
+        box = box_with(box, h->balls[k].centre);
     dem_ball ball = {v3_scale(v3_add(box.low, box.high), 0.5), 0};
-    for (size_t k = 0; k < parts(shape); k++) {
-        dem_ball b = part(shape, k);
-        ball.radius = fmax(ball.radius, v3_distance(b.centre, ball.centre) + b.radius);
-    }
-    return ball;
+    for (size_t k = 0; k < h->count; k++)
+        ball.radius = fmax(ball.radius, v3_distance(h->balls[k].centre, ball.centre) + h->balls[k].radius);
+    h->count = h->count > 0;
+    if (h->count)
+        h->balls[0] = ball;
 }
 
 // calls `visit` with balls that hold the scene between them: its parts or, where they are too many, whole bodies
-static void visit_all(const dem_render_scene *scene, const dem_ball *bounds, visitor *visit, void *user)
+static void visit_all(const dem_render_scene *scene, visitor *visit, void *user)
 {
+    size_t all = 0;
+    hold *holds = dem_alloc_zero(scene->shape_count, sizeof *holds);
+    for (size_t i = 0; i < scene->body_count; i++)
+        all += parts(&scene->shapes[scene->bodies[i].shape]);
+    for (size_t i = 0; holds && i < scene->shape_count; i++) {
+        holds[i] = hold_shape(&scene->shapes[i]);
+        if (all > MANY_PARTS && holds[i].balls)
+            bound(&holds[i]);
+    }
     for (size_t i = 0; i < scene->body_count; i++) {
         const dem_render_body *body = &scene->bodies[i];
         const dem_render_shape *shape = &scene->shapes[body->shape];
-        size_t count = parts(shape);
-        for (size_t k = 0; k < (bounds && count ? 1 : count); k++) {
-            dem_ball b = bounds ? bounds[body->shape] : part(shape, k);
+        const hold *h = holds && holds[body->shape].balls ? &holds[body->shape] : NULL;
+        for (size_t k = 0; k < (h ? h->count : parts(shape)); k++) {
+            dem_ball b = h ? h->balls[k] : part(shape, k);
             visit(user, placed(body, b.centre), b.radius * body->scale);
         }
     }
-}
-
-// of all shapes, where the scene has too many parts to visit each (or there is no memory: NULL)
-static dem_ball *bound_shapes(const dem_render_scene *scene)
-{
-    size_t all = 0;
-    for (size_t i = 0; i < scene->body_count; i++)
-        all += parts(&scene->shapes[scene->bodies[i].shape]);
-    dem_ball *bounds = all > MANY_PARTS ? dem_alloc(scene->shape_count, sizeof *bounds) : NULL;
-    for (size_t i = 0; bounds && i < scene->shape_count; i++)
-        bounds[i] = bounding_ball(&scene->shapes[i]);
-    return bounds;
+    for (size_t i = 0; holds && i < scene->shape_count; i++)
+        free(holds[i].balls);
+    free(holds);
 }
 
 // The extents along the axes of the view, and how far the eye must step back so that everything is on the inner side of
@@ -123,9 +145,7 @@ void dem_fit_begin(dem_fit *f, const dem_camera *camera, int width, int height)
 
 void dem_fit_add(dem_fit *f, const dem_render_scene *scene)
 {
-    dem_ball *bounds = bound_shapes(scene);
-    visit_all(scene, bounds, widen, f);
-    free(bounds);
+    visit_all(scene, widen, f);
 }
 
 // moves the eye back until all is in the picture, and sideways until the free room is the same on either side
