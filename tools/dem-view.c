@@ -6,7 +6,7 @@
 #include "base/memory.h"
 #include "math/vec.h"
 #include "out/legend.h"
-#include "out/sheet.h"
+#include "out/grid.h"
 #include "view.h"
 
 static const char about[] =
@@ -255,7 +255,7 @@ static double choose_columns(double count, double aspect)
 }
 
 // as large as the number of cells asks for
-static dem_sheet divide(const view_choices *c, const view_inputs *all)
+static dem_grid divide(const view_choices *c, const view_inputs *all)
 {
     const view_arguments *a = c->arguments;
     size_t runs = 0;
@@ -268,12 +268,12 @@ static dem_sheet divide(const view_choices *c, const view_inputs *all)
     int height = c->height ? c->height : (int)(ceil(n / columns) * cell * (1 / aspect + (a->no_names ? 0 : 0.12)));
     // columns that were not asked for are free where the size is
     size_t fixed = a->columns ? (size_t)a->columns : c->width || c->height ? 0 : (size_t)columns;
-    return dem_sheet_divide(all->count, width, height, fixed, aspect, !a->no_names, a->label_size);
+    return dem_grid_divide(all->count, width, height, fixed, aspect, !a->no_names, a->label_size);
 }
 
 // the largest breadth of a pixel of all grains, so that they are drawn to one scale
 static dem_status common_pixel(const dem_ctx *ctx, const view_choices *c, const view_inputs *all,
-                               const dem_sheet *sheet, double *pixel, dem_error *error)
+                               const dem_grid *sheet, double *pixel, dem_error *error)
 {
     *pixel = 0;
     for (size_t i = 0; i < all->count; i++) {
@@ -291,7 +291,7 @@ static dem_status common_pixel(const dem_ctx *ctx, const view_choices *c, const 
     return DEM_OK;
 }
 
-static dem_status draw_cells(const dem_ctx *ctx, const view_choices *c, const view_inputs *all, const dem_sheet *sheet,
+static dem_status draw_cells(const dem_ctx *ctx, const view_choices *c, const view_inputs *all, const dem_grid *sheet,
                              double pixel, dem_image *image, dem_error *error)
 {
     view_choices cell = *c;
@@ -309,11 +309,11 @@ static dem_status draw_cells(const dem_ctx *ctx, const view_choices *c, const vi
             DEM_TRY(draw_grain(&step, c, in, false, pixel, width, height, &part, error));
         else
             DEM_TRY(draw_run(&step, c, in, width, height, &part, NULL, error));
-        dem_sheet_cell(sheet, s.done, &left, &top);
+        dem_grid_cell(sheet, s.done, &left, &top);
         dem_image_paste(image, &part, left, top);
         dem_image_free(&part);
         if (sheet->name_height)
-            DEM_TRY(dem_sheet_name(sheet, image, s.done, in->name, dem_ink_on(c->background), error));
+            DEM_TRY(dem_grid_name(sheet, image, s.done, in->name, dem_ink_on(c->background), error));
     }
     return DEM_OK;
 }
@@ -321,7 +321,7 @@ static dem_status draw_cells(const dem_ctx *ctx, const view_choices *c, const vi
 static dem_status draw_sheet(const dem_ctx *ctx, const view_choices *c, const view_inputs *all, report *r,
                              dem_error *error)
 {
-    dem_sheet sheet = divide(c, all);
+    dem_grid sheet = divide(c, all);
     const uint8_t *b = c->background;
     dem_image image;
     double pixel = 0;

@@ -6,7 +6,7 @@
 #include "base/memory.h"
 #include "math/vec.h"
 #include "out/legend.h"
-#include "out/sheet.h"
+#include "out/grid.h"
 #include "view.h"
 
 static dem_status open_clump(const view_arguments *a, const char *path, bool alone, view_grain *g, dem_error *error)

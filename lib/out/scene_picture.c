@@ -9,7 +9,7 @@
 #include "out/field.h"
 #include "out/legend.h"
 #include "out/palette.h"
-#include "out/sheet.h"
+#include "out/grid.h"
 #include "out/wall_mesh.h"
 
 static const double FIELD_DEG = 24, MARGIN = 0.03;

@@ -1,18 +1,18 @@
 #include "check.h"
 
-#include "out/sheet.h"
+#include "out/grid.h"
 
 static void cells_fill_the_sheet_without_overlap(void **state)
 {
     (void)state;
     for (size_t count = 1; count < 40; count++)
         for (int width = 300; width < 2000; width += 570) {
-            dem_sheet s = dem_sheet_divide(count, width, 900, 0, 1, true, 0);
+            dem_grid s = dem_grid_divide(count, width, 900, 0, 1, true, 0);
             check(s.columns * s.rows >= count && s.columns * (s.rows - 1) < count);
             unsigned char *seen = calloc((size_t)width * 900, 1);
             for (size_t i = 0; i < count; i++) {
                 int left, top;
-                dem_sheet_cell(&s, i, &left, &top);
+                dem_grid_cell(&s, i, &left, &top);
                 check(left >= 0 && top >= 0 && left + s.cell_width <= width &&
                       top + s.cell_height + s.name_height <= 900);
                 for (int y = top; y < top + s.cell_height + s.name_height; y++)
@@ -26,14 +26,14 @@ static void cells_fill_the_sheet_without_overlap(void **state)
 static void cells_are_as_large_as_they_can_be(void **state)
 {
     (void)state;
-    dem_sheet s = dem_sheet_divide(12, 1600, 900, 0, 1, false, 0);
+    dem_grid s = dem_grid_divide(12, 1600, 900, 0, 1, false, 0);
     check(s.columns == 4 && s.rows == 3 && s.cell_height == 300 && s.name_height == 0);
     for (size_t columns = 1; columns <= 12; columns++) {
-        dem_sheet other = dem_sheet_divide(12, 1600, 900, columns, 1, false, 0);
+        dem_grid other = dem_grid_divide(12, 1600, 900, columns, 1, false, 0);
         check(other.columns == columns);
         check(fmin(other.cell_width, other.cell_height) <= fmin(s.cell_width, s.cell_height));
     }
-    check(dem_sheet_divide(2, 900, 900, 7, 1, true, 0).columns == 2);
+    check(dem_grid_divide(2, 900, 900, 7, 1, true, 0).columns == 2);
 }
 
 static void what_is_pasted_is_cut_at_the_edges(void **state)
@@ -61,13 +61,13 @@ static void what_is_pasted_is_cut_at_the_edges(void **state)
 static void names_stand_under_their_pictures(void **state)
 {
     (void)state;
-    dem_sheet s = dem_sheet_divide(2, 400, 240, 2, 1, true, 12);
+    dem_grid s = dem_grid_divide(2, 400, 240, 2, 1, true, 12);
     dem_image image;
     dem_error error;
     check_ok(dem_image_create(400, 240, &image, &error), error);
     dem_image_fill(&image, (dem_rgb){255, 255, 255});
-    check_ok(dem_sheet_name(&s, &image, 1, "a name that is much too long for a picture of this size.json",
-                            (dem_rgb){0, 0, 0}, &error),
+    check_ok(dem_grid_name(&s, &image, 1, "a name that is much too long for a picture of this size.json",
+                           (dem_rgb){0, 0, 0}, &error),
              error);
     int ink = 0;
     for (int y = 0; y < 240; y++)

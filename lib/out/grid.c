@@ -1,4 +1,4 @@
-#include "out/sheet.h"
+#include "out/grid.h"
 
 #include <math.h>
 #include <string.h>
@@ -6,9 +6,9 @@
 static const double NAME_SIZE = 1.0 / 17;  // of a name, over the breadth of its picture
 static const double LEAST = 8, MOST = 30;  // [pixels]
 
-static dem_sheet sheet_of(size_t count, int width, int height, size_t columns, bool names, double text_size)
+static dem_grid grid_of(size_t count, int width, int height, size_t columns, bool names, double text_size)
 {
-    dem_sheet s = {.count = count, .columns = columns, .width = width, .height = height};
+    dem_grid s = {.count = count, .columns = columns, .width = width, .height = height};
     s.rows = (count + columns - 1) / columns;
     s.cell_width = width / (int)columns;
     s.text_size = text_size > 0 ? text_size : fmin(fmax(round(s.cell_width * NAME_SIZE), LEAST), MOST);
@@ -17,16 +17,16 @@ static dem_sheet sheet_of(size_t count, int width, int height, size_t columns, b
     return s;
 }
 
-dem_sheet dem_sheet_divide(size_t count, int width, int height, size_t columns, double aspect, bool names,
-                           double text_size)
+dem_grid dem_grid_divide(size_t count, int width, int height, size_t columns, double aspect, bool names,
+                         double text_size)
 {
     count = count ? count : 1;
     if (columns)
-        return sheet_of(count, width, height, columns < count ? columns : count, names, text_size);
-    dem_sheet best = {0};
+        return grid_of(count, width, height, columns < count ? columns : count, names, text_size);
+    dem_grid best = {0};
     double best_size = -1;
     for (size_t n = 1; n <= count && n <= (size_t)width; n++) {
-        dem_sheet s = sheet_of(count, width, height, n, names, text_size);
+        dem_grid s = grid_of(count, width, height, n, names, text_size);
         double size = fmin(s.cell_width, aspect * s.cell_height);
         if (size > best_size)
             best = s, best_size = size;
@@ -34,7 +34,7 @@ dem_sheet dem_sheet_divide(size_t count, int width, int height, size_t columns, 
     return best;
 }
 
-void dem_sheet_cell(const dem_sheet *s, size_t cell, int *left, int *top)
+void dem_grid_cell(const dem_grid *s, size_t cell, int *left, int *top)
 {
     *left = (int)(cell % s->columns) * s->cell_width + (s->width - (int)s->columns * s->cell_width) / 2;
     *top = (int)(cell / s->columns) * (s->cell_height + s->name_height);
@@ -56,13 +56,13 @@ void dem_image_fill(dem_image *image, dem_rgb colour)
     dem_fill_box(image, 0, 0, image->width, image->height, colour);
 }
 
-dem_status dem_sheet_name(const dem_sheet *s, dem_image *image, size_t cell, const char *name, dem_rgb ink,
-                          dem_error *error)
+dem_status dem_grid_name(const dem_grid *s, dem_image *image, size_t cell, const char *name, dem_rgb ink,
+                         dem_error *error)
 {
     int left, top;
     char room[256];
     dem_text_style style = {.size = s->text_size, .ink = ink, .align = DEM_ALIGN_CENTRE};
-    dem_sheet_cell(s, cell, &left, &top);
+    dem_grid_cell(s, cell, &left, &top);
     const char *text = dem_text_fit(name, s->text_size, s->cell_width - s->text_size, room, sizeof room);
     return dem_text_draw(image, left + s->cell_width / 2.0, top + s->cell_height + 1.35 * s->text_size, &style, text,
                          error);
