@@ -153,7 +153,7 @@ static void the_surface_or_the_spheres_are_drawn(void **state)
     dem_view view;
     dem_image surface = drawn(&p.view, &o, 1, &view);
     // the tetrahedron has corners in x, y, z from 0 on, the balls lie on both sides
-    dem_vec3 in_ball = v3_add(p.position[0], v3(-0.6, 0, 0));
+    dem_vec3 in_ball = v3_add(p.position[0], v3(-0.7, 0, 0.115));
     double x, y;
     dem_view_project(&view, in_ball, &x, &y);
     check(x < 0 || is_grey(pixel_of(&surface, &view, in_ball)));

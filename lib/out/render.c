@@ -22,9 +22,10 @@ enum {
     BORDER_LOW = 1,  // pixels about a tile that its averages take in
     BORDER_HIGH = 2,
     EDGE = TILE + BORDER_LOW + BORDER_HIGH,
-    PATCHES = 4,   // surfaces in one pixel
-    SAMPLES = 16,  // of a pixel at an edge, if nothing is asked for
-    STEP = 4,           // pixels between points of the ground's lattice
+    PATCHES = 4,      // surfaces in one pixel
+    SAMPLES = 16,     // of a pixel at an edge, if nothing is asked for
+    FEW_SAMPLES = 5,  // if these all see the same, the edge is beside the pixel
+    STEP = 4,         // pixels between points of the ground's lattice
     NODES = TILE / STEP + 3,
 };
 
@@ -68,14 +69,16 @@ static void add_veil(cell *p, dem_veil veil)
     p->veil.light.b += veil.light.b;
 }
 
-static void take_sample(const dem_stage *s, double x, double y, cell *p)
+// true: it sees what the first one of the pixel sees
+static bool take_sample(const dem_stage *s, double x, double y, cell *p)
 {
     dem_spot seen;
     bool any = dem_stage_look(s, x, y, &seen);
-    add_veil(p, dem_stage_veil(s, x, y, any ? &seen : NULL));
+    dem_veil veil = dem_stage_veil(s, x, y, any ? &seen : NULL);
+    add_veil(p, veil);
     p->weight++;
     if (!any)
-        return;
+        return p->count == 0 && veil.key == p->veil.key;
     int k = 0;
     while (k < p->count && !same_surface(s, &p->patches[k].spot, &seen))
         k++;
@@ -84,6 +87,19 @@ static void take_sample(const dem_stage *s, double x, double y, cell *p)
     else if (k == p->count)
         p->patches[p->count++] = (patch){.spot = seen};
     p->patches[k].weight++;
+    return p->patches[0].weight == p->weight && veil.key == p->veil.key;
+}
+
+// many samples of a pixel near an edge; a few where the edge seems to miss it
+static void take_more(const dem_stage *s, double left, double top, cell *p)
+{
+    size_t most = (size_t)(s->scene->samples > 0 ? s->scene->samples : SAMPLES) - 1;
+    bool same = true;
+    for (size_t i = 0; i < most && !(same && i == FEW_SAMPLES); i++) {
+        double u, v;
+        dem_even_point(i, &u, &v);
+        same &= take_sample(s, left + u, top + v, p);
+    }
 }
 
 static bool same_sight(const dem_stage *s, const cell *a, const cell *b)
@@ -108,14 +124,10 @@ static void take_samples(const dem_stage *s, tile *t)
             for (int k = 0; k < 9; k++)
                 t->edges[y][x] |= !same_sight(s, &t->cells[y][x], &t->cells[y - 1 + k / 3][x - 1 + k % 3]);
         }
-    size_t more = (size_t)(s->scene->samples > 0 ? s->scene->samples : SAMPLES) - 1;
     for (int y = 1; y < height - 1; y++)
         for (int x = 1; x < width - 1; x++)
-            for (size_t i = 0; t->edges[y][x] && i < more; i++) {
-                double u, v;
-                dem_even_point(i, &u, &v);
-                take_sample(s, left + x + u, top + y + v, &t->cells[y][x]);
-            }
+            if (t->edges[y][x])
+                take_more(s, left + x, top + y, &t->cells[y][x]);
 }
 
 static void light_patches(const dem_stage *s, tile *t)
