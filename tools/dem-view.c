@@ -14,8 +14,8 @@ static const char about[] =
     "grains, with a scale bar, its time and a bar of the colours; several inputs, or a folder of clumps, as a sheet.";
 
 static const char epilogue[] =
-    "Colours: number (each body its own), shape, size, speed, spin, coordination, height, mass, x, y, z, and every\n"
-    "array of a frame, as in velocity:z or angular_velocity.\n"
+    "Colours: number (each body its own), shape, size, speed, spin, coordination, height, mass, x, y, z,\n"
+    "and every array of a frame, as in velocity:z or angular_velocity.\n"
     "Examples:\n"
     "  dem-view out/ -o last.png\n"
     "  dem-view out/ -o fast.png --colour speed --range \"0..0.5 m/s\" --clip \"x<7mm\" --time 0.05\n"
@@ -272,8 +272,8 @@ static dem_grid divide(const view_choices *c, const view_inputs *all)
 }
 
 // the largest breadth of a pixel of all grains, so that they are drawn to one scale
-static dem_status common_pixel(const dem_ctx *ctx, const view_choices *c, const view_inputs *all,
-                               const dem_grid *sheet, double *pixel, dem_error *error)
+static dem_status common_pixel(const dem_ctx *ctx, const view_choices *c, const view_inputs *all, const dem_grid *sheet,
+                               double *pixel, dem_error *error)
 {
     *pixel = 0;
     for (size_t i = 0; i < all->count; i++) {

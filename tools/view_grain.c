@@ -94,7 +94,7 @@ static dem_camera given_camera(const view_choices *c)
     const view_arguments *a = c->arguments;
     const dem_picture_options o = dem_picture_defaults();
     return dem_camera_around(c->up, isnan(a->azimuth) ? o.azimuth_deg : a->azimuth,
-                             isnan(a->elevation) ? o.elevation_deg : a->elevation, a->perspective ? 24 : 0, 0);
+                             isnan(a->elevation) ? o.elevation_deg : a->elevation, 0, 0);
 }
 
 dem_status view_grain_open(const dem_ctx *ctx, const view_choices *c, const char *path, bool alone, view_grain *g,
@@ -109,6 +109,7 @@ dem_status view_grain_open(const dem_ctx *ctx, const view_choices *c, const char
     else
         DEM_TRY(open_mesh(ctx, c, path, g, error));
     g->picture.zoom = a->zoom;
+    g->picture.field_deg = a->perspective ? 24 : 0;
     g->picture.samples = (int)a->samples;
     g->picture.background = &c->light;
     g->picture.camera = c->camera_given ? &g->camera : NULL;

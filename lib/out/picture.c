@@ -143,6 +143,7 @@ static dem_view view_of(const dem_grain_picture *g, const model *m, int width, i
                             ? *g->camera
                             : choose_camera(has_mesh(g) ? surface_spread(g->mesh) : balls_spread(g->balls, g->count));
     camera.margin = MARGIN;
+    camera.field_deg = g->field_deg;
     dem_view view = dem_view_fit(&m->scene, &camera, m->scene.body_count == 2 ? width / 2 : width, height);
     if (g->look_at) {
         view.radius += v3_distance(view.centre, *g->look_at);

@@ -11,6 +11,7 @@ typedef struct dem_grain_picture {
     const dem_ball *balls;
     size_t count;
     const dem_camera *camera;      ///< NULL: the grain lies flat and is seen from above
+    double field_deg;              ///< angle of view; 0: parallel rays
     double zoom;                   ///< of what fits [-]; 0: 1
     const dem_vec3 *look_at;       ///< NULL: its middle
     double pixel;                  ///< at least this breadth of a pixel, so that grains are drawn to one scale [m]

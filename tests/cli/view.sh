@@ -27,6 +27,9 @@ cat >scene.json <<'END'
 END
 run 0 dem-run scene.json -q
 
+run 0 dem-view --help
+[ "$(awk '{ if (length > n) n = length } END { print n }' out)" -le 100 ] || fail "help wider than 100 columns"
+
 # ---- wrong usage is found without drawing anything
 usage() { run 2 dem-view "${@:2}"; one_line; mentions "$1"; }
 usage 'name the output directory of a run, or clumps or meshes'
@@ -158,6 +161,8 @@ run 0 dem-view "$grains/sand.obj" -o a.png --size 100x100 --unit mm
 cmp -s bare.png a.png && fail "no scale bar with --unit"
 run 0 dem-view "$grains/sand.obj" -o a.png --size 100x100 --azimuth 30
 cmp -s bare.png a.png && fail "--azimuth changes no mesh"
+run 0 dem-view "$grains/sand.obj" -o a.png --size 100x100 --perspective
+cmp -s bare.png a.png && fail "--perspective changes no mesh"
 run 0 dem-view results/shapes/pair.vtp -o a.png --size 100x100
 if [ -x "$tools/dem-clump" ]; then
     run 0 dem-clump "$grains/sand.obj" -n 8 -o s.vtp -o s.json -q
