@@ -87,6 +87,9 @@ static void maps_grow_lighter_all_the_way(void **state)
     check(low.b > 2 * low.r && high.r > high.b && high.g > high.b);
     check(red(low) == red(dem_palette_at(&p, 0)) && red(high) == red(dem_palette_at(&p, 1)));
     check_near(red(none), blue(none), 1e-6);
+    // the ends are the outermost knots
+    check(difference(low, dem_colour_lch(.36, .135, .79)) < 1e-4);
+    check(difference(high, dem_colour_lch(.92, .16, .295)) < 1e-4);
 }
 
 static void the_diverging_map_is_white_in_the_middle(void **state)

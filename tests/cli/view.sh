@@ -36,7 +36,7 @@ usage 'name the output directory of a run, or clumps or meshes'
 usage 'name the file to write' out
 usage 'both want standard output' results -o - --json
 usage "did you mean speed\?" results -o a.png --colour sped
-usage "take one of: size speed" results -o a.png --colour viscosity
+usage "take one of: size speed" results -o a.png --colour quartz-content
 usage "'velocity' has 3 components, ':w' is none of them; write velocity:0" results -o a.png --colour velocity:w --frame 0
 usage 'is no range; write LOW..HIGH' results -o a.png --colour speed --range 3
 usage 'ends before it begins' results -o a.png --colour speed --range 3..1
