@@ -3,7 +3,7 @@
 #include <math.h>
 #include <string.h>
 
-static const double NAME_SIZE = 1.0 / 17;  // of a name, over the breadth of its picture
+static const double NAME_SIZE = 1.0 / 24;  // of a name, over the breadth of its picture
 static const double LEAST = 8, MOST = 30;  // [pixels]
 
 static dem_grid grid_of(size_t count, int width, int height, size_t columns, bool names, double text_size)
