@@ -1,6 +1,6 @@
 #!/usr/bin/python3
 """Writes small valid files to start the fuzzers from: make_seeds.py FOLDER -> FOLDER/{stl,obj,ply,off,sniff,scene,csv,
-checkpoint,clump_import}/"""
+checkpoint,vtp,clump_import}/"""
 import hashlib
 import os
 import struct
@@ -73,6 +73,43 @@ seeds['scene'] = [scene.encode(), (head % ('hertz', '') + tail).encode(), b'{"sc
                   b'\xfftime.end=5 ms\n' + scene.encode(), b'\xffbodies[0].scale=2\n{"schema": "dem-scene/1"}']
 seeds['csv'] = [b'shape,x,y,z\nrock,1,2,3\n', b'\xef\xbb\xbf# c\r\nshape,x,y,z,qw,qx,qy,qz,vx,vy,vz,wx,wy,wz,scale,id\r\n'
                 b'"a, ""b""",1.2345678901234567,-2e-3,3,1,2,3,4,5,6,7,8,9,10,0.5,"x"\r\n']
+
+
+def vtp(points, vertices, lines, triangles, fields, arrays, cells):
+    """As lib/out/vtp.c writes it."""
+    blocks = []
+
+    def tag(kind, name, width, data, field=False):
+        offset = sum(8 + len(b) for b in blocks)
+        blocks.append(data)
+        return '<DataArray type="%s" Name="%s" NumberOfComponents="%d"%s format="appended" offset="%d"/>\n' % (
+            kind, name, width, ' NumberOfTuples="1"' if field else '', offset)
+
+    def some_cells(kind, corners, size):
+        if not corners:
+            return ''
+        n = len(corners)
+        return '<%s>\n' % kind + tag('Int64', 'connectivity', 1, struct.pack('<%dq' % n, *corners)) + \
+            tag('Int64', 'offsets', 1, struct.pack('<%dq' % (n // size), *range(size, n + 1, size))) + '</%s>\n' % kind
+
+    xml = '<?xml version="1.0"?>\n<VTKFile type="PolyData" version="1.0" byte_order="LittleEndian" ' \
+        'header_type="UInt64">\n<PolyData>\n<FieldData>\n' + ''.join(tag(*f, field=True) for f in fields) + '</FieldData>\n'
+    n = len(points) // 3
+    xml += '<Piece NumberOfPoints="%d" NumberOfVerts="%d" NumberOfLines="%d" NumberOfStrips="0" NumberOfPolys="%d">\n' % (
+        n, n if vertices else 0, len(lines) // 2, len(triangles) // 3)
+    xml += '<Points>\n' + tag('Float64', 'Points', 3, struct.pack('<%dd' % len(points), *points)) + '</Points>\n'
+    xml += '<PointData%s>\n' % (' Scalars="%s"' % arrays[0][1] if arrays else '') + ''.join(tag(*a) for a in arrays)
+    xml += '</PointData>\n<CellData>\n' + ''.join(tag(*c) for c in cells) + '</CellData>\n'
+    xml += some_cells('Verts', list(range(n)) if vertices else [], 1) + some_cells('Lines', lines, 2)
+    xml += some_cells('Polys', triangles, 3) + '</Piece>\n</PolyData>\n<AppendedData encoding="raw">\n_'
+    return xml.encode() + b''.join(struct.pack('<Q', len(b)) + b for b in blocks) + b'\n</AppendedData>\n</VTKFile>\n'
+
+
+seeds['vtp'] = [vtp([], False, [], [], [], [], []),
+                vtp([0, 1, 2, 3, 4, 5], True, [], [], [('Float64', 'TimeValue', 1, struct.pack('<d', 0.5))],
+                    [('Int32', 'template', 1, struct.pack('<2i', 0, 1)), ('Float32', 'orientation', 4, bytes(32))], []),
+                vtp([0.0] * 9, False, [0, 1], [0, 1, 2, 2, 1, 0], [], [],
+                    [('UInt32', 'wall', 1, struct.pack('<3I', 1, 2, 3))])]
 balls = [(-0.0023, -0.0008, -0.0003, 0.01), (0.0068, 0.0007, -0.0004, 0.008), (-0.0081, 0.0065, 0.0008, 0.006)]
 rows = '\n'.join('%g %g %g %g' % b for b in balls) + '\n'
 head = '# g: 3 spheres of dem-clump 0.1.0\n# frame: %s\n# unit of x y z r: m\n# density [kg/m^3]: 2650\n# mass [kg]: 0.015\n' \
