@@ -4,7 +4,7 @@
 
 #include "mesh/icosphere.h"
 
-enum { BLOCK = 1 << 15, SIBLING_STREAM = 5 };
+enum { BLOCK = 1 << 15, SIBLING_STREAM = 5, ATTEMPTS = 50 };
 
 static const double THINNEST = 0.1;  // smallest radius of a usable grain, part of the mean
 
@@ -94,13 +94,21 @@ dem_status dem_harmonics_mesh(const dem_ctx *ctx, const dem_harmonics *h, size_t
     return status;
 }
 
-void dem_harmonics_sibling(const dem_harmonics *of, int kept, uint64_t seed, dem_harmonics *sibling)
+dem_status dem_harmonics_sibling(const dem_ctx *ctx, const dem_harmonics *of, int kept, uint64_t seed, size_t triangles,
+                                 dem_harmonics *sibling, dem_mesh *mesh, dem_error *error)
 {
-    *sibling = *of;
-    for (int n = kept + 1; n <= of->degree; n++) {
-        // a stream per degree: what is kept of the lower ones does not change the higher
-        dem_random random = random_stream(seed, SIBLING_STREAM + 1000 * (uint64_t)n);
-        if (n > 0)
+    for (int attempt = 0; attempt < ATTEMPTS; attempt++) {
+        *sibling = *of;
+        for (int n = kept + 1 > 1 ? kept + 1 : 1; n <= of->degree; n++) {
+            // a stream per degree: what is kept of the lower ones does not change the higher
+            uint64_t stream = SIBLING_STREAM + 100 * (uint64_t)n + 10000 * (uint64_t)attempt;
+            dem_random random = random_stream(seed, stream);
             dem_harmonics_draw(sibling, n, dem_harmonics_power(of, n), &random);
+        }
+        dem_status status = dem_harmonics_mesh(ctx, sibling, triangles, mesh, error);
+        if (status != DEM_USAGE)
+            return status;
     }
+    return dem_fail(error, DEM_USAGE,
+                    "its siblings are hollowed out to their centres; keep more degrees of it, or fit a lower degree");
 }

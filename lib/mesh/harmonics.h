@@ -61,7 +61,9 @@ typedef struct dem_surface_distance {
 } dem_surface_distance;
 dem_status dem_mesh_distance(const dem_mesh *a, const dem_mesh *b, dem_surface_distance *distance, dem_error *error);
 
-/// A grain of the same spectrum: degrees above `kept` are drawn anew, with the D_n of `of`.
-void dem_harmonics_sibling(const dem_harmonics *of, int kept, uint64_t seed, dem_harmonics *sibling);
+/// A grain of the same spectrum: degrees above `kept` are drawn anew with the D_n of `of`, again and again until the
+/// grain is nowhere hollowed out. DEM_USAGE where that never comes.
+dem_status dem_harmonics_sibling(const dem_ctx *ctx, const dem_harmonics *of, int kept, uint64_t seed, size_t triangles,
+                                 dem_harmonics *sibling, dem_mesh *mesh, dem_error *error);
 
 #endif
