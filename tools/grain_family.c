@@ -81,7 +81,7 @@ static void put_lengths(dem_buffer *out, const double *lengths, size_t count, co
     double factor, longest = 0;
     for (size_t i = 0; i < count; i++)
         longest = fmax(longest, lengths[i]);
-    const char *unit = dem_length_unit(longest, &factor);
+    const char *unit = dem_length_unit(longest * (1 + 1e-6), &factor);  // 0.9999999 mm is not 1000 um
     for (size_t i = 0; i < count; i++) {
         dem_buffer_text(out, i ? between : "");
         dem_buffer_number(out, lengths[i] * factor, 5);
@@ -128,7 +128,7 @@ static void put_summary(dem_buffer *out, const grain_family *f)
     if (f->scan)
         put_fit(out, f->scan);
     dem_buffer_text(out, "  equivalent diameter  ");
-    put_lengths(out, diameters, f->made > 1 ? 2 : 1, " to ");
+    put_lengths(out, diameters, diameters[1] > diameters[0] * (1 + 1e-9) ? 2 : 1, " to ");
     if (!f->s->folder) {
         dem_buffer_text(out, "\n  extent x, y, z       ");
         put_lengths(out, extent, 3, " x ");

@@ -10,6 +10,7 @@
 
 #include "base/memory.h"
 #include "mesh/grain.h"
+#include "mesh/flips.h"
 #include "mesh/patchwork.h"
 
 enum { A, B, C, N1, N2 };
@@ -152,7 +153,8 @@ static void put_side(const grid *g, int axis, bool far, dem_patchwork *w)
 // even numbers of cells in the proportion of the half axes, with about so many triangles
 static void choose_counts(grid *g, size_t triangles)
 {
-    double low = 0, high = 1e12, least = triangles < 200 ? 2 : 4;
+    // thin sides get a few more the finer the rest is
+    double low = 0, high = 1e12, least = triangles < 200 ? 2 : fmax(4, 2 * floor(pow((double)triangles, 0.25) / 2));
     double longest = fmax(g->values[A], fmax(g->values[B], g->values[C]));
     for (int k = 0; k < 100; k++) {
         double middle = (low + high) / 2, n[3];
@@ -170,8 +172,8 @@ static dem_status make(const dem_ctx *ctx, const dem_grain_request *request, dem
     const double *v = request->values;
     double longest = fmax(v[A], fmax(v[B], v[C])), shortest = fmin(v[A], fmin(v[B], v[C]));
     if (longest > LONGEST * shortest)
-        return dem_fail(error, DEM_USAGE, "the half axes differ by a factor of %.3g; at most 100 is allowed",
-                        longest / shortest);
+        return dem_fail(error, DEM_USAGE, "the half axes differ by a factor of %.3g; at most %.0f is allowed",
+                        longest / shortest, LONGEST);
     grid *g = dem_alloc(1, sizeof *g);
     if (!g)
         return dem_fail_memory(error);
@@ -189,7 +191,11 @@ static dem_status make(const dem_ctx *ctx, const dem_grain_request *request, dem
         dem_mesh_free(&work.mesh);
         return dem_fail(error, DEM_INTERRUPTED, "interrupted; nothing was written");
     }
-    return dem_patchwork_finish(&work, mesh, error);
+    DEM_TRY(dem_patchwork_finish(&work, mesh, error));
+    dem_status status = dem_mesh_flip_to_convex(mesh, error);
+    if (status != DEM_OK)
+        dem_mesh_free(mesh);
+    return status;
 }
 
 const dem_grain_kind dem_grain_superquadric = {

@@ -3,6 +3,7 @@
 #include <stdlib.h>
 
 #include "base/memory.h"
+#include "mesh/flips.h"
 #include "mesh/patchwork.h"
 #include "mesh/polyhedron.h"
 
@@ -211,6 +212,17 @@ static dem_status wrap(wrapping *w, dem_mesh *mesh, dem_error *error)
     return dem_patchwork_finish(&w->work, mesh, error);
 }
 
+// patches over long narrow corners have needles that lean; the origin need not lie inside
+static dem_status flip_from_inside(dem_mesh *mesh, dem_vec3 inside, dem_error *error)
+{
+    for (size_t i = 0; i < mesh->vertex_count; i++)
+        mesh->vertices[i] = v3_sub(mesh->vertices[i], inside);
+    dem_status status = dem_mesh_flip_to_convex(mesh, error);
+    for (size_t i = 0; i < mesh->vertex_count; i++)
+        mesh->vertices[i] = v3_add(mesh->vertices[i], inside);
+    return status;
+}
+
 dem_status dem_polyhedron_mesh(const dem_polyhedron *p, double radius, size_t triangles, dem_mesh *mesh,
                                dem_error *error)
 {
@@ -238,5 +250,7 @@ dem_status dem_polyhedron_mesh(const dem_polyhedron *p, double radius, size_t tr
     }
     dem_arena_release(&arena);
     dem_polyhedron_sides_release(&w.sides);
+    if (status == DEM_OK && radius > 0)
+        status = flip_from_inside(mesh, m.centre, error);
     return status;
 }
