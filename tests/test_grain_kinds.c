@@ -144,7 +144,7 @@ static void rounded_solids_obey_steiner(void **state)
             if (round == 0)
                 check_near(gaps[0], 0, 1e-12);
             else
-                check_converges(gaps, 8e-3);
+                check_converges(gaps, 1e-2);
         }
 }
 

@@ -146,7 +146,7 @@ static void hollow_siblings_are_drawn_again_or_refused(void **state)
         dem_harmonics once = *h;
         random = random_stream(seed, 5 + 300);
         dem_harmonics_draw(&once, 3, 0.36, &random);
-        first += memcmp(once.c, sibling->c, sizeof once.c) == 0;
+        first += fabs(once.c[9] - sibling->c[9]) < 1e-12;
     }
     check(first > 0 && first < 20);
     dem_harmonics_draw(h, 3, 2, &random);

@@ -4,8 +4,8 @@
 #include "geom/tree.h"
 #include "mesh/grain.h"
 #include "mesh/mass.h"
+#include "mesh/polyhedron.h"
 #include "mesh/roughen.h"
-#include "shapes.h"
 
 static dem_mesh made(const dem_grain_options *options, const dem_ctx *ctx)
 {
@@ -26,15 +26,15 @@ static size_t sound(const dem_mesh *mesh)
     return report.self_intersections;
 }
 
-// a plate 1 x 1 x 0.1, its faces divided in n x n, so that the upper one shows the field itself
-static dem_mesh plate(int n)
+// a plate 1 x 1 x 0.1, so that its large faces show the field itself
+static dem_mesh plate(size_t triangles)
 {
-    dem_mesh mesh = shape_sphere(n);
-    for (size_t i = 0; i < mesh.vertex_count; i++) {
-        dem_vec3 p = mesh.vertices[i];
-        double s = fmax(fabs(p.x), fmax(fabs(p.y), fabs(p.z)));
-        mesh.vertices[i] = v3(p.x / s / 2, p.y / s / 2, p.z / s / 20);
-    }
+    dem_polyhedron box = {0};
+    dem_mesh mesh;
+    dem_error error;
+    check_ok(dem_polyhedron_box(&box, (dem_box){{-0.5, -0.5, -0.05}, {0.5, 0.5, 0.05}}, &error), error);
+    check_ok(dem_polyhedron_mesh(&box, 0, triangles, &mesh, &error), error);
+    dem_polyhedron_release(&box);
     return mesh;
 }
 
@@ -42,7 +42,7 @@ static void heights_have_the_amplitude_and_wavelength_asked_for(void **state)
 {
     (void)state;
     const double amplitude = 1e-3, wavelength = 0.06;
-    dem_mesh flat = plate(SLOW_BUILD ? 100 : 160), rough;
+    dem_mesh flat = plate(SLOW_BUILD ? 60000 : 150000), rough;
     dem_error error;
     double reached;
     check_ok(dem_mesh_copy(&flat, &rough, &error), error);
@@ -168,7 +168,8 @@ static void too_much_of_it_is_lowered_with_a_word_or_refused(void **state)
     dem_mesh_free(&mesh);
     dem_error error;
     o.values = (double[]){1e-3, 1e-3, 0.002e-3};
-    o.roughness = 0.1e-3;
+    o.roughness_scale = 0.1e-3;
+    o.roughness = 0.05e-3;
     check(dem_grain_make(NULL, &o, &mesh, &error) == DEM_USAGE && strstr(error.text, "crosses itself"));
     check(mesh.vertices == NULL);
 }

@@ -7,9 +7,10 @@
 #include "math/sum.h"
 #include "mesh/crossings.h"
 
-enum { WAVES = 128, STREAM = 1001, SIDES_PER_WAVE = 6, BLOCK = 1 << 15 };
+enum { WAVES = 128, STREAM = 1001, SIDES_PER_WAVE = 6, BLOCK = 1 << 15, MOST_ROUNDS = 100 };
 
 static const double LEAST = 0.1, STEP = 0.8;  // of the amplitude, where it has to give way
+static const double HIGHEST = 4;              // heights, over the amplitude
 
 // Wave vectors point everywhere in space; what a surface sees of one is its part along the surface, on average sqrt(2/3)
 // of it. So they are longer by the inverse.
@@ -58,6 +59,29 @@ static void find_normals(const dem_mesh *mesh, dem_vec3 *normals)
     }
     for (size_t i = 0; i < mesh->vertex_count; i++)
         normals[i] = v3_unit(normals[i]);
+}
+
+// Over sharp edges the normals turn at once, and what moves inwards on one side would come out of the other. So they
+// turn over as far as the surface moves; where the surface is smooth, this changes nothing.
+static bool turn_normals_gradually(const dem_mesh *mesh, dem_vec3 *normals, double reach)
+{
+    dem_vec3 *sums = dem_alloc(mesh->vertex_count, sizeof *sums);
+    double side = sqrt(dem_mesh_solid(mesh).area / (double)mesh->triangle_count * 2.309401076758503);
+    double rounds = 1 + ceil(reach / side * reach / side);  // averages spread as the root of their number
+    for (int round = 0; sums && round < fmin(rounds, MOST_ROUNDS); round++) {
+        for (size_t i = 0; i < mesh->vertex_count; i++)
+            sums[i] = normals[i];
+        for (size_t t = 0; t < mesh->triangle_count; t++) {
+            const uint32_t *v = &mesh->triangles[3 * t];
+            for (int k = 0; k < 3; k++)
+                sums[v[k]] = v3_add(sums[v[k]], v3_add(normals[v[(k + 1) % 3]], normals[v[(k + 2) % 3]]));
+        }
+        for (size_t i = 0; i < mesh->vertex_count; i++)
+            normals[i] = v3_unit(sums[i]);
+    }
+    bool done = sums != NULL;
+    free(sums);
+    return done;
 }
 
 double dem_mesh_triangles_for(const dem_mesh *mesh, double wavelength)
@@ -147,6 +171,8 @@ dem_status dem_mesh_roughen(const dem_ctx *ctx, dem_mesh *mesh, double amplitude
         status = find_heights(ctx, mesh, &w, heights, error);
     if (status == DEM_OK) {
         find_normals(mesh, normals);
+        if (!turn_normals_gradually(mesh, normals, HIGHEST * amplitude))
+            status = dem_fail_memory(error);
         for (size_t i = 0; i < mesh->vertex_count; i++)
             smooth[i] = mesh->vertices[i];
     }
