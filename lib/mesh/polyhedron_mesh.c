@@ -9,7 +9,7 @@
 
 enum { ATTEMPTS = 4, MAX_STEPS = 1 << 20 };
 
-static const double COARSE_TURN = 0.8;  // [rad] one step over an edge turns at most so far
+static const double COARSE_TURN = 0.4;  // [rad] most that a step over an edge turns; more looks like an edge
 
 typedef struct wrapping {
     const dem_polyhedron *p;
@@ -168,7 +168,7 @@ static void fill_corner(wrapping *w, uint32_t first, outline *o)
             o->rim[o->length++] = strip_vertex(w, ends, w->steps[ends], k);
         side = w->sides.twin[ends];
     } while (side != first && o->sides < w->p->face_count);
-    fill(w, o, w->edge / w->radius, w->radius, corner_at(w, first));
+    fill(w, o, fmin(w->edge / w->radius, COARSE_TURN), w->radius, corner_at(w, first));
 }
 
 static void put_surface(wrapping *w, outline *o, uint32_t *shared)
