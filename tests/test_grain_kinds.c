@@ -174,6 +174,16 @@ static void random_hulls_are_convex_and_grow_rounder(void **state)
     }
 }
 
+static void break_up(const dem_ctx *ctx, dem_grain_request request, dem_vec3 block, size_t count, dem_mesh *cells)
+{
+    dem_fracture fracture;
+    dem_error error;
+    check_ok(dem_grain_break(ctx, &request, block, count, &fracture, &error), error);
+    for (size_t i = 0; i < count; i++)
+        check_ok(dem_grain_cell(&request, &fracture, i, &cells[i], &error), error);
+    dem_fracture_release(&fracture);
+}
+
 static void cells_fill_their_block(void **state)
 {
     (void)state;
@@ -184,10 +194,8 @@ static void cells_fill_their_block(void **state)
     for (size_t i = 0; i < sizeof counts / sizeof *counts; i++)
         for (int even = 0; even < 3; even += 2) {
             dem_grain_request request = {(double[]){even, 0}, 7 + i, 100};
-            dem_error error;
             for (int threads = 1; threads <= 3; threads += 2)
-                check_ok(dem_grain_cells(&(dem_ctx){.threads = threads}, &request, block, counts[i], cells[threads / 2],
-                                         &error), error);
+                break_up(&(dem_ctx){.threads = threads}, request, block, counts[i], cells[threads / 2]);
             double sum = 0;
             for (size_t k = 0; k < counts[i]; k++) {
                 dem_mesh *a = &cells[0][k], *b = &cells[1][k];
@@ -212,9 +220,7 @@ static void evened_cells_are_more_alike(void **state)
     double spread[2];
     for (int i = 0; i < 2; i++) {
         dem_mesh cells[COUNT];
-        dem_error error;
-        dem_grain_request request = {(double[]){20.0 * i, 0}, 3, 80};
-        check_ok(dem_grain_cells(NULL, &request, v3(1, 1, 1), COUNT, cells, &error), error);
+        break_up(NULL, (dem_grain_request){(double[]){20.0 * i, 0}, 3, 80}, v3(1, 1, 1), COUNT, cells);
         double square = 0;
         for (size_t k = 0; k < COUNT; k++) {
             double v = COUNT * dem_mesh_solid(&cells[k]).volume - 1;
@@ -231,11 +237,9 @@ static void wear_takes_edges_and_leaves_faces(void **state)
     (void)state;
     double area = INFINITY;
     for (int wear = 0; wear <= 3; wear++) {
-        dem_grain_request request = {(double[]){0, 0.3 * wear}, 1, 4000};
-        dem_error error;
         dem_mesh cube;
         // the one cell of a block is the block: worn, a rounded cube of the same faces
-        check_ok(dem_grain_cells(NULL, &request, v3(2, 2, 2), 1, &cube, &error), error);
+        break_up(NULL, (dem_grain_request){(double[]){0, 0.3 * wear}, 1, 4000}, v3(2, 2, 2), 1, &cube);
         check_sound(&cube);
         double r = 0.3 * wear, core = 2 - 2 * r;
         double volume = pow(core, 3) + 6 * core * core * r + 3 * DEM_PI * core * r * r + 4 * DEM_PI / 3 * r * r * r;

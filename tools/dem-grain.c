@@ -7,7 +7,6 @@
 #include "base/nearest.h"
 #include "base/units.h"
 #include "grain_settings.h"
-#include "mesh/fracture.h"
 #include "mesh/harmonics.h"
 
 enum { MOST_GRAINS = 100000 };
@@ -198,6 +197,9 @@ static int check_together(const cli_tool *tool, const settings *s, const dem_gra
         return cli_wrong_usage(tool, "--siblings are those of a scan; name it with --fit");
     if (s->same_volume && s->grain.size > 0)
         return cli_wrong_usage(tool, "--same-volume and --size are two sizes; give one of them");
+    if (s->siblings && (double)s->kept >= grain_degree(s))
+        return cli_wrong_usage(tool, "--kept-degrees %ld leaves nothing to draw; take less than --degree, %.0f", s->kept,
+                               grain_degree(s));
     if (s->block && !s->cells)
         return cli_wrong_usage(tool, "--block is broken into --cells; say how many");
     if ((s->grain.roughness > 0) != (s->grain.roughness_scale > 0))
@@ -289,8 +291,8 @@ int main(int argc, char **argv)
          MOST_GRAINS},
         {"format", 0, CLI_CHOICE, "obj|stl|ply|off", "of the files in a folder (default obj)", &s.format, 0, 0},
         {"size", 0, CLI_LENGTH, "D",
-         "diameter of the sphere of equal volume (default 1 mm; an ellipsoid's is as its axes "
-         "give it)",
+         "diameter of the sphere of equal volume (default 1 mm; ellipsoids and superquadrics "
+         "are as their axes give them)",
          &s.grain.size, 1e-9, 1e9},
         {"triangles", 0, CLI_WHOLE, "N", "about so many (default 3000)", &s.triangles, DEM_GRAIN_MIN_TRIANGLES,
          DEM_GRAIN_MAX_TRIANGLES},
@@ -314,12 +316,14 @@ int main(int argc, char **argv)
         {.help = "From a scan"},
         {"fit", 0, CLI_TEXT, "SCAN", "harmonics of a given mesh up to --degree, where it lies", &s.fit, 0, 0},
         {"unit", 0, CLI_TEXT, "NAME", "length unit of its coordinates (default m)", &s.unit, 0, 0},
+        {"repair", 0, CLI_CHOICE, "auto|strict|wrap", "as in dem-clump, should it need any (default auto)", &s.repair, 0,
+         0},
         {"siblings", 0, CLI_WHOLE, "N", "a folder of other grains with the spectrum of the scan", &s.siblings, 1,
          MOST_GRAINS},
         {"kept-degrees", 0, CLI_WHOLE, "N",
          "siblings keep the coefficients up to this degree: 2 the form, 0 nothing but the spectrum (default 2)",
          &s.kept, 0, DEM_HARMONICS_DEGREE},
-        {"same-volume", 0, CLI_FLAG, NULL, "and have exactly its volume", &s.same_volume, 0, 0},
+        {"same-volume", 0, CLI_FLAG, NULL, "twin and siblings have exactly the volume of the scan", &s.same_volume, 0, 0},
     };
     const cli_option common[] = {CLI_COMMON_OPTIONS(s.common)};
     cli_option options[MAX_OPTIONS];

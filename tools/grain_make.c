@@ -111,23 +111,24 @@ static dem_status make_cells(grain_family *f, const dem_ctx *ctx, const char *co
     const settings *s = f->s;
     double values[DEM_GRAIN_PARAMS];
     DEM_TRY(dem_grain_values(&dem_grain_rock, s->own_values, values, error));
-    dem_mesh *cells = dem_alloc_zero((size_t)s->cells, sizeof *cells);
-    if (!cells)
-        return dem_fail_memory(error);
     dem_grain_request request = {values, s->grain.seed, s->grain.triangles};
     dem_vec3 block = v3(s->block_edges[0], s->block_edges[1], s->block_edges[2]);
-    dem_status status = dem_grain_cells(ctx, &request, block, (size_t)s->cells, cells, error);
-    for (long i = 0; i < s->cells; i++) {
+    dem_fracture fracture;
+    DEM_TRY(dem_grain_break(ctx, &request, block, (size_t)s->cells, &fracture, error));
+    dem_status status = DEM_OK;
+    for (long i = 0; i < s->cells && status == DEM_OK; i++) {
+        dem_mesh mesh = {0};
         char name[48];
         dem_buffer origin = {0};
         dem_buffer_print(&origin, "%s, cell %ld", command, i + 1);
         put_name(name, sizeof name, "cell", i + 1, s->cells);
+        status = dem_grain_cell(&request, &fracture, (size_t)i, &mesh, error);
         if (status == DEM_OK)
-            status = grain_family_add(f, &cells[i], name, s->common.seed, origin.data, error);
+            status = grain_family_add(f, &mesh, name, s->common.seed, origin.data, error);
         dem_buffer_release(&origin);
-        dem_mesh_free(&cells[i]);
+        dem_mesh_free(&mesh);
     }
-    free(cells);
+    dem_fracture_release(&fracture);
     return status;
 }
 
@@ -147,7 +148,7 @@ int grain_make_cells(const cli_tool *tool, const settings *s, dem_mesh_format fo
     return status;
 }
 
-static double degree_of(const settings *s)
+double grain_degree(const settings *s)
 {
     const dem_grain_kind *kind = &dem_grain_harmonics;
     size_t i = 0;
@@ -158,25 +159,33 @@ static double degree_of(const settings *s)
 
 static void put_fit_command(dem_buffer *out, const settings *s, long seed, long siblings)
 {
-    dem_buffer_print(out, "dem-grain --fit %s --unit %s --degree %.0f --triangles %zu", s->fit, s->unit, degree_of(s),
+    dem_buffer_print(out, "dem-grain --fit %s --unit %s --degree %.0f --triangles %zu", s->fit, s->unit, grain_degree(s),
                      s->grain.triangles);
     put_rest(out, &s->grain);
+    dem_buffer_text(out, s->repair == DEM_REPAIR_WRAP ? " --repair wrap" : s->repair ? " --repair strict" : "");
+    dem_buffer_text(out, s->same_volume ? " --same-volume" : "");
     if (siblings)
-        dem_buffer_print(out, " --siblings %ld --seed %ld --kept-degrees %ld%s", siblings, seed, s->kept,
-                         s->same_volume ? " --same-volume" : "");
+        dem_buffer_print(out, " --siblings %ld --seed %ld --kept-degrees %ld", siblings, seed, s->kept);
 }
 
 static dem_status read_scan(const dem_ctx *ctx, const settings *s, dem_mesh *scan, dem_error *error)
 {
     dem_mesh_report report;
+    dem_repair_options options = {.repair = (dem_repair)s->repair, .keep = DEM_KEEP_LARGEST};
     DEM_TRY(dem_mesh_import(ctx, s->fit, scan, error));
     dem_mesh_scale(scan, s->length_unit);
-    dem_status status = dem_mesh_repair(ctx, scan, &(dem_repair_options){.keep = DEM_KEEP_LARGEST}, &report, error);
+    dem_status status = dem_mesh_repair(ctx, scan, &options, &report, error);
     if (status != DEM_OK) {
         snprintf(error->file, sizeof error->file, "%s", s->fit);
         dem_mesh_free(scan);
     }
     return status;
+}
+
+static void move(dem_mesh *mesh, dem_vec3 by)
+{
+    for (size_t i = 0; i < mesh->vertex_count; i++)
+        mesh->vertices[i] = v3_add(mesh->vertices[i], by);
 }
 
 // reads and fits the scan; the twin lies where the scan does
@@ -185,13 +194,13 @@ static dem_status fit_scan(const dem_ctx *ctx, const settings *s, grain_scan *sc
 {
     dem_mesh mesh;
     DEM_TRY(read_scan(ctx, s, &mesh, error));
-    dem_status status = dem_harmonics_fit_mesh(ctx, &mesh, (int)degree_of(s), &scan->of, &scan->fit, error);
+    dem_status status = dem_harmonics_fit_mesh(ctx, &mesh, (int)grain_degree(s), &scan->of, &scan->fit, error);
     if (status == DEM_OK)
         status = dem_harmonics_mesh(ctx, &scan->of, s->grain.triangles, twin, error);
-    for (size_t i = 0; i < twin->vertex_count && status == DEM_OK; i++)
-        twin->vertices[i] = v3_add(twin->vertices[i], scan->fit.centre);
-    if (status == DEM_OK)
+    if (status == DEM_OK) {
+        move(twin, scan->fit.centre);
         status = dem_mesh_distance(&mesh, twin, &scan->distance, error);
+    }
     dem_mesh_free(&mesh);
     if (status != DEM_OK) {
         if (status == DEM_USAGE)
@@ -210,12 +219,12 @@ static dem_status fit_scan(const dem_ctx *ctx, const settings *s, grain_scan *sc
 }
 
 // the size asked for, where one was
-static void set_size(const settings *s, const grain_scan *scan, dem_mesh *mesh, bool sibling)
+static void set_size(const settings *s, const grain_scan *scan, dem_mesh *mesh)
 {
     double volume = dem_mesh_solid(mesh).volume, wanted = 0;
     if (s->grain.size > 0)
         wanted = DEM_PI / 6 * pow(s->grain.size, 3);
-    else if (s->same_volume && sibling)
+    else if (s->same_volume)
         wanted = scan->fit.volume;
     if (wanted > 0)
         dem_mesh_scale(mesh, cbrt(wanted / volume));
@@ -238,7 +247,7 @@ static dem_status make_siblings(grain_family *f, const dem_ctx *ctx, const grain
         status = dem_harmonics_sibling(ctx, &scan->of, (int)s->kept, (uint64_t)seed, s->grain.triangles, sibling, &mesh,
                                        error);
         if (status == DEM_OK) {
-            set_size(s, scan, &mesh, true);
+            set_size(s, scan, &mesh);
             status = grain_family_add(f, &mesh, name, seed, origin.data, error);
         }
         dem_buffer_release(&origin);
@@ -261,9 +270,10 @@ static dem_status make_fit(grain_family *f, grain_scan *scan, const char *comman
     if (s->siblings) {
         status = make_siblings(f, &own, scan, error);
     } else {
-        for (size_t i = 0; i < twin.vertex_count && s->grain.size > 0; i++)
-            twin.vertices[i] = v3_sub(twin.vertices[i], scan->fit.centre);
-        set_size(s, scan, &twin, false);
+        move(&twin, v3_scale(scan->fit.centre, -1));
+        set_size(s, scan, &twin);
+        if (s->grain.size == 0)
+            move(&twin, scan->fit.centre);
         f->digits = TWIN_DIGITS;
         status = grain_family_add(f, &twin, "twin", s->common.seed, command, error);
     }

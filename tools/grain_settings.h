@@ -14,6 +14,7 @@ typedef struct settings {
     bool list, same_volume;
     long triangles, dents, count, cells, siblings, kept;
     int format;  // of the files in a folder
+    int repair;  // of the scan, a dem_repair
     dem_grain_options grain;
     double values[MAX_KINDS][DEM_GRAIN_PARAMS];  // NAN: not given
     char help[MAX_KINDS][DEM_GRAIN_PARAMS][160], headings[MAX_KINDS][160];
@@ -28,6 +29,8 @@ typedef struct settings {
 int grain_make_kinds(const cli_tool *tool, const settings *s, dem_mesh_format format);
 /// All cells of one block, into a folder.
 int grain_make_cells(const cli_tool *tool, const settings *s, dem_mesh_format format);
+/// The highest degree of harmonics.
+double grain_degree(const settings *s);
 /// The twin of a scan, or siblings of it.
 int grain_make_fit(const cli_tool *tool, const settings *s, dem_mesh_format format);
 

@@ -5,6 +5,7 @@
 #include "base/random.h"
 #include "base/status.h"
 #include "dem/mesh.h"
+#include "mesh/fracture.h"
 
 enum { DEM_GRAIN_PARAMS = 16 };
 
@@ -70,10 +71,12 @@ dem_status dem_grain_make(const dem_ctx *ctx, const dem_grain_options *options, 
 /// Fills `values` of a kind with those given (NULL or NAN: none) and its defaults. DEM_USAGE for one out of range.
 dem_status dem_grain_values(const dem_grain_kind *kind, const double *given, double *values, dem_error *error);
 
-/// All `count` cells of a block broken as kind rock breaks it, from the origin to `block` [m], each where it lies in
-/// the block. Without wear they fill it.
-dem_status dem_grain_cells(const dem_ctx *ctx, const dem_grain_request *request, dem_vec3 block, size_t count,
-                           dem_mesh *cells, dem_error *error);
+/// Breaks a block as kind rock does, from the origin to `block` [m], with the values and the seed of the request.
+dem_status dem_grain_break(const dem_ctx *ctx, const dem_grain_request *request, dem_vec3 block, size_t count,
+                           dem_fracture *fracture, dem_error *error);
+/// One cell of it where it lies in the block; each once, for wear takes from it. Without wear they fill the block.
+dem_status dem_grain_cell(const dem_grain_request *request, dem_fracture *fracture, size_t cell, dem_mesh *mesh,
+                          dem_error *error);
 
 /// For kinds: unit vectors spread over the sphere, each the one of some random candidates that is farthest from
 /// all before it (Mitchell 1991).

@@ -1,9 +1,6 @@
 /// Fractured rock: a block breaks into the Voronoi cells of random points. A single grain is the cell in the middle of
-/// a block of its own; dem_grain_cells keeps all cells of one block. Wear rolls a ball around the inside of a cell, so
+/// a block of its own; dem_grain_break keeps all cells of one block. Wear rolls a ball around the inside of a cell, so
 /// that faces stay where they are and edges become round.
-#include <stdlib.h>
-
-#include "base/memory.h"
 #include "mesh/fracture.h"
 #include "mesh/grain.h"
 
@@ -47,24 +44,17 @@ static dem_status make(const dem_ctx *ctx, const dem_grain_request *request, dem
     return status;
 }
 
-dem_status dem_grain_cells(const dem_ctx *ctx, const dem_grain_request *request, dem_vec3 block, size_t count,
-                           dem_mesh *cells, dem_error *error)
+dem_status dem_grain_break(const dem_ctx *ctx, const dem_grain_request *request, dem_vec3 block, size_t count,
+                           dem_fracture *fracture, dem_error *error)
 {
-    dem_fracture fracture;
-    for (size_t i = 0; i < count; i++)
-        cells[i] = (dem_mesh){0};
-    DEM_TRY(dem_fracture_block(ctx, (dem_box){{0, 0, 0}, block}, count, (size_t)request->values[EVEN], request->seed,
-                               &fracture, error));
-    dem_status status = DEM_OK;
-    for (size_t i = 0; i < count && status == DEM_OK; i++) {
-        status = mesh_cell(&fracture.cells[i], request->values[WEAR], request->triangles, &cells[i], error);
-        if (status == DEM_OK && dem_progress(ctx, "meshing", (double)(i + 1) / (double)count))
-            status = dem_fail(error, DEM_INTERRUPTED, "interrupted; nothing was written");
-    }
-    for (size_t i = 0; i < count && status != DEM_OK; i++)
-        dem_mesh_free(&cells[i]);
-    dem_fracture_release(&fracture);
-    return status;
+    return dem_fracture_block(ctx, (dem_box){{0, 0, 0}, block}, count, (size_t)request->values[EVEN], request->seed,
+                              fracture, error);
+}
+
+dem_status dem_grain_cell(const dem_grain_request *request, dem_fracture *fracture, size_t cell, dem_mesh *mesh,
+                          dem_error *error)
+{
+    return mesh_cell(&fracture->cells[cell], request->values[WEAR], request->triangles, mesh, error);
 }
 
 const dem_grain_kind dem_grain_rock = {

@@ -87,6 +87,7 @@ refuses '--d2 is what --fit finds out; leave it out' --fit a.obj --d2 0.1
 refuses '--fit makes harmonics; leave --kind out' --fit a.obj --kind rock
 refuses '--elongation does not go together with --fit' --fit a.obj --elongation 0.5
 refuses '--same-volume and --size are two sizes' --fit a.obj --same-volume --size 1mm
+refuses '--kept-degrees 8 leaves nothing to draw' --fit a.obj --siblings 2 --kept-degrees 8 --degree 8
 refuses "'x.obj' names a file, but there is to be a folder" --count 2
 refuses 'hollowed out to its centre; lower d2 or d8' --d2 0.4 --d8 0.1 --exponent 2 --form -1
 run 2 dem-grain -o grain.xyz
@@ -121,7 +122,7 @@ prints '"count": 2'
 prints '"file": "harmonics-2.stl"'
 [ "$(stat -c %s fam/harmonics-1.stl)" = $((84 + 50 * 320)) ] || fail "fam/harmonics-1.stl has the wrong size"
 # a seed that makes no grain is named and left out
-run 1 dem-grain --d2 0.3 --d8 0.02 --count 12 --triangles 200 -o bare/
+run 1 dem-grain --d2 0.25 --d8 0.03 --count 12 --triangles 200 -o bare/
 mentions 'warning: seed [0-9]+ left out: the grain of these descriptors and this seed is hollowed out'
 [ "$(($(ls bare | wc -l) - 1 + $(grep -c 'left out' err)))" = 12 ] || fail "bare/ has $(ls bare)"
 run 2 dem-grain --kind superquadric --a 1m --b 1mm --c 1um --count 50 -o worse/
