@@ -60,8 +60,8 @@ static void a_fit_finds_the_coefficients_again(void **state)
         }
         dem_mesh_free(&mesh);
     }
-    check(errors[0] < 5e-4);              // flat triangles lie inside of the surface, by their side^2 / 8
-    check(errors[1] < errors[0] / 3);     // and four times as many by a quarter of it
+    check(errors[0] < 5e-4);           // flat triangles lie inside of the surface, by their side^2 / 8
+    check(errors[1] < errors[0] / 3);  // and four times as many by a quarter of it
     free(h);
     free(found);
 }
@@ -114,7 +114,8 @@ static void siblings_have_the_spectrum_and_another_shape(void **state)
             }
             check_ok(dem_mesh_distance(&parent, &mesh, &apart, &error), error);
             check(apart.rms > 2e-6 && apart.largest > apart.rms);
-            check_ok(dem_harmonics_sibling(&(dem_ctx){.threads = 3}, h, kept, seed, 2000, sibling, &again, &error), error);
+            check_ok(dem_harmonics_sibling(&(dem_ctx){.threads = 3}, h, kept, seed, 2000, sibling, &again, &error),
+                     error);
             assert_memory_equal(mesh.vertices, again.vertices, mesh.vertex_count * sizeof *mesh.vertices);
             dem_mesh_free(&again);
             check_ok(dem_mesh_repair(NULL, &mesh, &(dem_repair_options){.repair = DEM_REPAIR_STRICT}, &report, &error),
@@ -166,7 +167,8 @@ static void what_rays_meet_twice_is_told(void **state)
     for (size_t i = 0; i < mesh.vertex_count; i++) {
         dem_vec3 *p = &mesh.vertices[i];
         double t = fmax(0, (p->z - 0.8) / 0.2);  // 0 at the shoulder, 1 at the tip
-        double r = hypot(p->x, p->y), width = t > 0 ? (t < 0.5 ? 0.5 - 0.2 * t : 0.4 + 1.0 * (t - 0.5) * (1 - t) * 4) : r;
+        double r = hypot(p->x, p->y),
+               width = t > 0 ? (t < 0.5 ? 0.5 - 0.2 * t : 0.4 + 1.0 * (t - 0.5) * (1 - t) * 4) : r;
         if (t > 0.95)
             width = 0.5 * (1 - t) * 20 * 0.6;
         if (t > 0 && r > 0)
@@ -176,6 +178,18 @@ static void what_rays_meet_twice_is_told(void **state)
     dem_harmonics_fit fit;
     check_ok(dem_harmonics_fit_mesh(NULL, &mesh, 4, h, &fit, &error), error);
     check(fit.hidden > 1e-3 && fit.hidden < 0.2 && fit.hidden_depth > 0.05);
+    dem_mesh_free(&mesh);
+    // a hollow ball: the outer surface counts
+    dem_mesh hole = shape_sphere(30);
+    mesh = shape_sphere(60);
+    shape_scale(&hole, 0.5, 0.5, 0.5);
+    shape_flip(&hole, 0, hole.triangle_count);
+    shape_append(&mesh, &hole, 0, hole.triangle_count);
+    check_ok(dem_harmonics_fit_mesh(NULL, &mesh, 4, h, &fit, &error), error);
+    check(fit.hidden == 1);
+    check_near(fit.hidden_depth, 0.5, 1e-2);
+    check_close(h->c[0], sqrt(4 * DEM_PI), 1e-3);
+    dem_mesh_free(&hole);
     dem_mesh_free(&mesh);
     // a ring's centre of mass is outside of it
     const int around = 60, across = 20;

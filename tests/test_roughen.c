@@ -107,7 +107,8 @@ static void distances_to_the_smooth_grain_have_the_amplitude(void **state)
             square += part * d * d;
             area += part;
         }
-        check_close(sqrt(square / area), o.roughness, 0.06);  // less at sharp edges, which are moved along their bisector
+        check_close(sqrt(square / area), o.roughness,
+                    0.06);  // less at sharp edges, which are moved along their bisector
         dem_tree_release(&tree);
         dem_mesh_free(&smooth);
         dem_mesh_free(&rough);
@@ -148,7 +149,8 @@ static void coarse_triangles_are_made_finer_with_a_word(void **state)
     check(dem_grain_make(NULL, &o, &mesh, &error) == DEM_USAGE && strstr(error.text, "must be less than the grain"));
     o.roughness_scale = 1e-4;
     o.roughness = 6e-5;
-    check(dem_grain_make(NULL, &o, &mesh, &error) == DEM_USAGE && strstr(error.text, "roughness must be a number from 0 to 5e-05"));
+    check(dem_grain_make(NULL, &o, &mesh, &error) == DEM_USAGE &&
+          strstr(error.text, "roughness must be a number from 0 to 5e-05"));
 }
 
 static void too_much_of_it_is_lowered_with_a_word_or_refused(void **state)

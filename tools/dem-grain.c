@@ -164,16 +164,11 @@ static const char *stray_option(const settings *s)
     const struct {
         const char *name;
         bool given, with_cells, with_fit;
-    } options[] = {{"--count", s->count > 0, false, false},
-                   {"--cells", s->cells > 0, true, false},
-                   {"--block", s->block != NULL, true, false},
-                   {"--siblings", s->siblings > 0, false, true},
-                   {"--same-volume", s->same_volume, false, true},
-                   {"--size", o->size > 0, false, true},
-                   {"--elongation", o->elongation < 1, false, false},
-                   {"--flatness", o->flatness < 1, false, false},
-                   {"--dents", s->dents > 0, false, false},
-                   {"--roughness", o->roughness > 0, false, false}};
+    } options[] = {{"--count", s->count > 0, false, false},           {"--cells", s->cells > 0, true, false},
+                   {"--block", s->block != NULL, true, false},        {"--siblings", s->siblings > 0, false, true},
+                   {"--same-volume", s->same_volume, false, true},    {"--size", o->size > 0, false, true},
+                   {"--elongation", o->elongation < 1, false, false}, {"--flatness", o->flatness < 1, false, false},
+                   {"--dents", s->dents > 0, false, false},           {"--roughness", o->roughness > 0, false, false}};
     for (size_t i = 0; i < sizeof options / sizeof *options; i++)
         if (options[i].given && !(s->fit ? options[i].with_fit : options[i].with_cells))
             return options[i].name;
@@ -198,8 +193,8 @@ static int check_together(const cli_tool *tool, const settings *s, const dem_gra
     if (s->same_volume && s->grain.size > 0)
         return cli_wrong_usage(tool, "--same-volume and --size are two sizes; give one of them");
     if (s->siblings && (double)s->kept >= grain_degree(s))
-        return cli_wrong_usage(tool, "--kept-degrees %ld leaves nothing to draw; take less than --degree, %.0f", s->kept,
-                               grain_degree(s));
+        return cli_wrong_usage(tool, "--kept-degrees %ld leaves nothing to draw; take less than --degree, %.0f",
+                               s->kept, grain_degree(s));
     if (s->block && !s->cells)
         return cli_wrong_usage(tool, "--block is broken into --cells; say how many");
     if ((s->grain.roughness > 0) != (s->grain.roughness_scale > 0))
@@ -279,7 +274,12 @@ static int run(const cli_tool *tool, settings *s, const cli_texts *operands)
 
 int main(int argc, char **argv)
 {
-    static settings s = {.common = CLI_COMMON_DEFAULTS, .kind = "harmonics", .unit = "m", .triangles = 3000, .kept = 2, .block_edges = {0.01, 0.01, 0.01}};
+    static settings s = {.common = CLI_COMMON_DEFAULTS,
+                         .kind = "harmonics",
+                         .unit = "m",
+                         .triangles = 3000,
+                         .kept = 2,
+                         .block_edges = {0.01, 0.01, 0.01}};
     s.grain = dem_grain_defaults();
     const cli_option own[] = {
         {"kind", 'k', CLI_TEXT, "NAME", "what to make (default harmonics)", &s.kind, 0, 0},
@@ -316,14 +316,15 @@ int main(int argc, char **argv)
         {.help = "From a scan"},
         {"fit", 0, CLI_TEXT, "SCAN", "harmonics of a given mesh up to --degree, where it lies", &s.fit, 0, 0},
         {"unit", 0, CLI_TEXT, "NAME", "length unit of its coordinates (default m)", &s.unit, 0, 0},
-        {"repair", 0, CLI_CHOICE, "auto|strict|wrap", "as in dem-clump, should it need any (default auto)", &s.repair, 0,
-         0},
+        {"repair", 0, CLI_CHOICE, "auto|strict|wrap", "as in dem-clump, should it need any (default auto)", &s.repair,
+         0, 0},
         {"siblings", 0, CLI_WHOLE, "N", "a folder of other grains with the spectrum of the scan", &s.siblings, 1,
          MOST_GRAINS},
         {"kept-degrees", 0, CLI_WHOLE, "N",
          "siblings keep the coefficients up to this degree: 2 the form, 0 nothing but the spectrum (default 2)",
          &s.kept, 0, DEM_HARMONICS_DEGREE},
-        {"same-volume", 0, CLI_FLAG, NULL, "twin and siblings have exactly the volume of the scan", &s.same_volume, 0, 0},
+        {"same-volume", 0, CLI_FLAG, NULL, "twin and siblings have exactly the volume of the scan", &s.same_volume, 0,
+         0},
     };
     const cli_option common[] = {CLI_COMMON_OPTIONS(s.common)};
     cli_option options[MAX_OPTIONS];

@@ -159,8 +159,8 @@ double grain_degree(const settings *s)
 
 static void put_fit_command(dem_buffer *out, const settings *s, long seed, long siblings)
 {
-    dem_buffer_print(out, "dem-grain --fit %s --unit %s --degree %.0f --triangles %zu", s->fit, s->unit, grain_degree(s),
-                     s->grain.triangles);
+    dem_buffer_print(out, "dem-grain --fit %s --unit %s --degree %.0f --triangles %zu", s->fit, s->unit,
+                     grain_degree(s), s->grain.triangles);
     put_rest(out, &s->grain);
     dem_buffer_text(out, s->repair == DEM_REPAIR_WRAP ? " --repair wrap" : s->repair ? " --repair strict" : "");
     dem_buffer_text(out, s->same_volume ? " --same-volume" : "");
@@ -189,8 +189,7 @@ static void move(dem_mesh *mesh, dem_vec3 by)
 }
 
 // reads and fits the scan; the twin lies where the scan does
-static dem_status fit_scan(const dem_ctx *ctx, const settings *s, grain_scan *scan, dem_mesh *twin,
-                           dem_error *error)
+static dem_status fit_scan(const dem_ctx *ctx, const settings *s, grain_scan *scan, dem_mesh *twin, dem_error *error)
 {
     dem_mesh mesh;
     DEM_TRY(read_scan(ctx, s, &mesh, error));

@@ -11,8 +11,8 @@ enum { STREAM = 4, POINTS_PER_BIN = 2, CELLS_BETWEEN_REPORTS = 512 };
 typedef struct bins {
     dem_box block;
     size_t along[3];
-    double width[3];   // [m]
-    uint32_t *first;   // [bins + 1] in `points`
+    double width[3];  // [m]
+    uint32_t *first;  // [bins + 1] in `points`
     uint32_t *points;
 } bins;
 

@@ -12,12 +12,8 @@
 
 // a new kind is a file with its record, and its line here
 static const dem_grain_kind *const kinds[] = {
-    &dem_grain_harmonics,
-    &dem_grain_facets,
-    &dem_grain_ellipsoid,
-    &dem_grain_superquadric,
-    &dem_grain_polyhedron,
-    &dem_grain_rock,
+    &dem_grain_harmonics,    &dem_grain_facets,     &dem_grain_ellipsoid,
+    &dem_grain_superquadric, &dem_grain_polyhedron, &dem_grain_rock,
 };
 enum { KIND_COUNT = sizeof kinds / sizeof *kinds, DENT_STREAM = 1000, CANDIDATES = 20 };
 
@@ -206,14 +202,14 @@ static dem_status roughen(const dem_ctx *ctx, const dem_grain_kind *kind, const 
     if (o->roughness_scale > diameter) {
         dem_mesh_free(mesh);
         return dem_fail(error, DEM_USAGE, "roughness-scale must be less than the grain, %s m across, not %s m",
-                        dem_format_double(text[0], 32, diameter, 3), dem_format_double(text[1], 32, o->roughness_scale, 3));
+                        dem_format_double(text[0], 32, diameter, 3),
+                        dem_format_double(text[1], 32, o->roughness_scale, 3));
     }
     DEM_TRY(refine(ctx, kind, o, request, mesh, error));
     if (request->triangles > o->triangles)
         dem_log(ctx, DEM_LOG_WARNING, "%zu triangles cannot carry such fine roughness; it has %zu", o->triangles,
                 mesh->triangle_count);
-    dem_status status =
-        dem_mesh_roughen(ctx, mesh, o->roughness, o->roughness_scale, request->seed, &reached, error);
+    dem_status status = dem_mesh_roughen(ctx, mesh, o->roughness, o->roughness_scale, request->seed, &reached, error);
     if (status != DEM_OK) {
         dem_mesh_free(mesh);
         return status;

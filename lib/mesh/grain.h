@@ -47,15 +47,15 @@ typedef struct dem_grain_options {
     const char *kind;
     const double *values;  ///< one per parameter of the kind, NAN: its default; NULL: all defaults
     uint64_t seed;
-    size_t triangles;       ///< about so many
-    double size;            ///< diameter of the sphere of equal volume [m]; 0: the kind's own, or 1 mm
-    double elongation;      ///< stretches the made grain: y by this factor [-]
-    double flatness;        ///< and z by this one times the elongation [-]
-    size_t dents;           ///< hollows pressed into it after that
-    double dent_depth;      ///< of a hollow, part of the radius there [-]
-    double dent_width_deg;  ///< angle between its middle and its rim
-    double roughness;       ///< root mean square of waves on the finished surface, along its normals [m]
-    double roughness_scale; ///< their wavelength [m]
+    size_t triangles;        ///< about so many
+    double size;             ///< diameter of the sphere of equal volume [m]; 0: the kind's own, or 1 mm
+    double elongation;       ///< stretches the made grain: y by this factor [-]
+    double flatness;         ///< and z by this one times the elongation [-]
+    size_t dents;            ///< hollows pressed into it after that
+    double dent_depth;       ///< of a hollow, part of the radius there [-]
+    double dent_width_deg;   ///< angle between its middle and its rim
+    double roughness;        ///< root mean square of waves on the finished surface, along its normals [m]
+    double roughness_scale;  ///< their wavelength [m]
 } dem_grain_options;
 dem_grain_options dem_grain_defaults(void);
 

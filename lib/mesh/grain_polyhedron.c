@@ -22,8 +22,8 @@ static size_t regular_planes(int solid, dem_plane *planes)
     static const double s = 0.57735026918962576, a = 0.52573111211913361, b = 0.85065080835203993;
     static const dem_vec3 four[] = {{s, s, s}, {s, -s, -s}, {-s, s, -s}, {-s, -s, s}};
     static const dem_vec3 six[] = {{1, 0, 0}, {-1, 0, 0}, {0, 1, 0}, {0, -1, 0}, {0, 0, 1}, {0, 0, -1}};
-    static const dem_vec3 twelve[] = {{0, a, b}, {0, -a, b}, {0, a, -b}, {0, -a, -b}, {a, b, 0}, {-a, b, 0},
-                                      {a, -b, 0}, {-a, -b, 0}, {b, 0, a}, {-b, 0, a}, {b, 0, -a}, {-b, 0, -a}};
+    static const dem_vec3 twelve[] = {{0, a, b},  {0, -a, b},  {0, a, -b}, {0, -a, -b}, {a, b, 0},  {-a, b, 0},
+                                      {a, -b, 0}, {-a, -b, 0}, {b, 0, a},  {-b, 0, a},  {b, 0, -a}, {-b, 0, -a}};
     const dem_vec3 *normals = solid == 4 ? four : solid == 6 || solid == 8 ? six : twelve;
     size_t count = solid == 4 ? 4 : solid == 6 || solid == 8 ? 6 : 12;
     for (size_t i = 0; i < count; i++)
@@ -56,7 +56,8 @@ static dem_status make_core(const dem_grain_request *request, dem_polyhedron *co
         status = dem_polyhedron_dual(core, &inverse, error);
     dem_polyhedron_release(&inverse);
     if (status == DEM_BAD_INPUT)
-        return dem_fail(error, DEM_USAGE, "the points of this seed lie all on one side; take more points or another seed");
+        return dem_fail(error, DEM_USAGE,
+                        "the points of this seed lie all on one side; take more points or another seed");
     return status;
 }
 
@@ -65,8 +66,8 @@ static dem_status make(const dem_ctx *ctx, const dem_grain_request *request, dem
     (void)ctx;
     int solid = (int)request->values[SOLID];
     if (solid && solid != 4 && solid != 6 && solid != 8 && solid != 12 && solid != 20)
-        return dem_fail(error, DEM_USAGE, "there is no regular solid of %d faces; give 4, 6, 8, 12, 20, or 0 for a random hull",
-                        solid);
+        return dem_fail(error, DEM_USAGE,
+                        "there is no regular solid of %d faces; give 4, 6, 8, 12, 20, or 0 for a random hull", solid);
     double rounding = request->values[ROUNDING];
     if (rounding > 1 - LEAST)
         return dem_icosphere(dem_icosphere_frequency(request->triangles), mesh, error);

@@ -10,7 +10,8 @@ enum { CELLS = 64, MAX_EVEN = 20 };
 static const double MOST_WEAR = 0.9, LEAST_WEAR = 1e-3;
 
 static const dem_grain_param params[] = {
-    [EVEN] = {"even", 1, 0, MAX_EVEN, "count", "how often the cells are evened out: 0 shards of any size, 20 all alike"},
+    [EVEN] = {"even", 1, 0, MAX_EVEN, "count",
+              "how often the cells are evened out: 0 shards of any size, 20 all alike"},
     [WEAR] = {"wear", 0, 0, MOST_WEAR, "-", "radius of the worn edges over that of the largest ball inside: 0 sharp"},
 };
 

@@ -1,5 +1,5 @@
-/// Superquadrics, ((x/a)^n2 + (y/b)^n2)^(n1/n2) + (z/c)^n1 = 1, with the blockiness n1 of sections along z and n2 of the
-/// one across: 2 and 2 make an ellipsoid, large n1 a cylinder, both large a brick (Barr 1981; Podlozhnyuk, Pirker &
+/// Superquadrics, ((x/a)^n2 + (y/b)^n2)^(n1/n2) + (z/c)^n1 = 1, with the blockiness n1 of sections along z and n2 of
+/// the one across: 2 and 2 make an ellipsoid, large n1 a cylinder, both large a brick (Barr 1981; Podlozhnyuk, Pirker &
 /// Kloss 2017). With e = 2/n the volume is 2 a b c e1 e2 B(e1/2 + 1, e1) B(e2/2, e2/2) (Jaklic, Leonardis & Solina
 /// 2000).
 ///

@@ -42,12 +42,12 @@ dem_status dem_harmonics_mesh(const dem_ctx *ctx, const dem_harmonics *h, size_t
 
 /// What a fit to a mesh came to.
 typedef struct dem_harmonics_fit {
-    dem_vec3 centre;            ///< of the mesh, the origin of the harmonics [m]
-    double equivalent_diameter; ///< of the mesh [m]
-    double volume;              ///< of the mesh [m^3]
-    size_t rays;                ///< directions looked into
-    double hidden;              ///< part of the directions in which the surface is met more than once [-]
-    double hidden_depth;        ///< most that lies below its outermost point there [m]
+    dem_vec3 centre;             ///< of the mesh, the origin of the harmonics [m]
+    double equivalent_diameter;  ///< of the mesh [m]
+    double volume;               ///< of the mesh [m^3]
+    size_t rays;                 ///< directions looked into
+    double hidden;               ///< part of the directions in which the surface is met more than once [-]
+    double hidden_depth;         ///< most that lies below its outermost point there [m]
 } dem_harmonics_fit;
 
 /// Fits a closed, outward mesh by quadrature over the sphere about its centre of mass, by its outermost points.

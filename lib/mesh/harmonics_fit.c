@@ -49,7 +49,8 @@ static void legendre_nodes(double *nodes, double *weights)
 static dem_vec3 node_direction(const double *nodes, size_t ray)
 {
     // half a step aside, so that no plane of symmetry of a mesh along the axes is hit along its edges
-    double z = nodes[ray / COLUMNS], angle = 2 * DEM_PI * ((double)(ray % COLUMNS) + 0.5) / COLUMNS, s = sqrt(1 - z * z);
+    double z = nodes[ray / COLUMNS], angle = 2 * DEM_PI * ((double)(ray % COLUMNS) + 0.5) / COLUMNS,
+           s = sqrt(1 - z * z);
     return v3(s * cos(angle), s * sin(angle), z);
 }
 
@@ -82,10 +83,11 @@ static dem_status mend_misses(double *radii, size_t count, dem_error *error)
     for (size_t i = 0; i < count; i++)
         missing += isnan(radii[i]);
     if ((double)missing > OUTSIDE * (double)count)
-        return dem_fail(error, DEM_BAD_INPUT,
-                        "its centre of mass lies outside of it: in %.3g %% of all directions there is no surface, so no "
-                        "harmonics fit; cut it into rounder pieces",
-                        100 * (double)missing / (double)count);
+        return dem_fail(
+            error, DEM_BAD_INPUT,
+            "its centre of mass lies outside of it: in %.3g %% of all directions there is no surface, so no "
+            "harmonics fit; cut it into rounder pieces",
+            100 * (double)missing / (double)count);
     for (size_t i = 0; i < count && missing; i++)
         for (size_t k = 1; k < count && isnan(radii[i]); k++)
             radii[i] = radii[(i + k) % count];
@@ -123,9 +125,8 @@ dem_status dem_harmonics_fit_mesh(const dem_ctx *ctx, const dem_mesh *mesh, int 
                                   dem_harmonics_fit *fit, dem_error *error)
 {
     dem_solid solid = dem_mesh_solid(mesh);
-    *fit = (dem_harmonics_fit){.centre = solid.centre,
-                               .volume = solid.volume,
-                               .equivalent_diameter = cbrt(6 * solid.volume / DEM_PI)};
+    *fit = (dem_harmonics_fit){
+        .centre = solid.centre, .volume = solid.volume, .equivalent_diameter = cbrt(6 * solid.volume / DEM_PI)};
     dem_harmonics_init(h, degree);
     double nodes[ROWS], weights[ROWS], *radii = dem_alloc((size_t)ROWS * COLUMNS, sizeof *radii);
     if (!radii)

@@ -23,11 +23,12 @@ dem_status dem_patchwork_finish(dem_patchwork *work, dem_mesh *mesh, dem_error *
 typedef struct dem_polygon_patch {
     const dem_vec3 *corners;  ///< [sides]
     size_t sides;
-    const uint32_t *rim;      ///< vertices that are there already, side by side; the last one of a side is the first of the next
-    const size_t *begins;     ///< [sides + 1] where each side begins in `rim`, whose length is the last one
-    double edge;              ///< length of the triangles' sides, in the unit of the corners
-    double radius;            ///< of the sphere [m]; 0: flat
-    dem_vec3 centre;          ///< of the sphere [m]
+    const uint32_t
+        *rim;  ///< vertices that are there already, side by side; the last one of a side is the first of the next
+    const size_t *begins;  ///< [sides + 1] where each side begins in `rim`, whose length is the last one
+    double edge;           ///< length of the triangles' sides, in the unit of the corners
+    double radius;         ///< of the sphere [m]; 0: flat
+    dem_vec3 centre;       ///< of the sphere [m]
 } dem_polygon_patch;
 
 /// Rings around its middle, each side of a ring divided by its own length.

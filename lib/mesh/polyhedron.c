@@ -55,7 +55,8 @@ static void make_empty(dem_polyhedron *p)
 
 dem_status dem_polyhedron_box(dem_polyhedron *p, dem_box box, dem_error *error)
 {
-    static const uint32_t sides[6][4] = {{0, 4, 6, 2}, {1, 3, 7, 5}, {0, 1, 5, 4}, {2, 6, 7, 3}, {0, 2, 3, 1}, {4, 5, 7, 6}};
+    static const uint32_t sides[6][4] = {{0, 4, 6, 2}, {1, 3, 7, 5}, {0, 1, 5, 4},
+                                         {2, 6, 7, 3}, {0, 2, 3, 1}, {4, 5, 7, 6}};
     make_empty(p);
     bool good = true;
     for (int i = 0; i < 8; i++)
@@ -77,8 +78,8 @@ dem_status dem_polyhedron_box(dem_polyhedron *p, dem_box box, dem_error *error)
 typedef struct cutting {
     const dem_polyhedron *from;
     dem_polyhedron *to;
-    double *above;      // [corner_count] of the old corners
-    uint32_t *follows;  // [corner_count of both and more] next corner of the new face
+    double *above;         // [corner_count] of the old corners
+    uint32_t *follows;     // [corner_count of both and more] next corner of the new face
     uint32_t (*split)[3];  // edges cut: lower corner, higher corner, the new one
     size_t split_count;
 } cutting;
@@ -255,7 +256,8 @@ void dem_polyhedron_sides_release(dem_polyhedron_sides *sides)
 }
 
 // a face of the dual: the faces around a corner, counter-clockwise from that of the side that begins there
-static bool add_dual_face(dem_polyhedron *p, const dem_polyhedron *of, const dem_polyhedron_sides *sides, uint32_t first)
+static bool add_dual_face(dem_polyhedron *p, const dem_polyhedron *of, const dem_polyhedron_sides *sides,
+                          uint32_t first)
 {
     size_t begin = p->loop_count;
     uint32_t side = first;
@@ -330,8 +332,7 @@ dem_status dem_polyhedron_inball(const dem_polyhedron *p, dem_ball *ball, dem_er
     }
     ball->radius = INFINITY;  // of that centre exactly
     for (size_t f = 0; f < p->face_count; f++)
-        ball->radius =
-            fmin(ball->radius, p->faces[f].plane.distance - v3_dot(p->faces[f].plane.normal, ball->centre));
+        ball->radius = fmin(ball->radius, p->faces[f].plane.distance - v3_dot(p->faces[f].plane.normal, ball->centre));
     dem_polyhedron_release(&left);
     return status;
 }

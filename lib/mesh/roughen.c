@@ -12,8 +12,8 @@ enum { WAVES = 128, STREAM = 1001, SIDES_PER_WAVE = 6, BLOCK = 1 << 15, MOST_ROU
 static const double LEAST = 0.1, STEP = 0.8;  // of the amplitude, where it has to give way
 static const double HIGHEST = 4;              // heights, over the amplitude
 
-// Wave vectors point everywhere in space; what a surface sees of one is its part along the surface, on average sqrt(2/3)
-// of it. So they are longer by the inverse.
+// Wave vectors point everywhere in space; what a surface sees of one is its part along the surface, on average
+// sqrt(2/3) of it. So they are longer by the inverse.
 typedef struct waves {
     dem_vec3 k[WAVES];
     double phase[WAVES];
@@ -109,8 +109,8 @@ static void normalise(const dem_mesh *mesh, double *heights)
             dem_vec3 a = mesh->vertices[v[0]], b = mesh->vertices[v[1]], c = mesh->vertices[v[2]];
             double part = v3_norm(v3_cross(v3_sub(b, a), v3_sub(c, a))) / 2;
             double x = heights[v[0]], y = heights[v[1]], z = heights[v[2]];
-            sum_add(pass ? &square : &mean, part * (pass ? (x * x + y * y + z * z + x * y + y * z + z * x) / 6
-                                                         : (x + y + z) / 3));
+            sum_add(pass ? &square : &mean,
+                    part * (pass ? (x * x + y * y + z * z + x * y + y * z + z * x) / 6 : (x + y + z) / 3));
             sum_add(&area, pass ? 0 : part);
         }
         double middle = sum_value(mean) / sum_value(area);
