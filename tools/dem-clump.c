@@ -10,6 +10,7 @@
 #include "base/units.h"
 #include "cli.h"
 #include "clump/pack.h"
+#include "clump_convert.h"
 #include "clump_job.h"
 #include "clump_report.h"
 #include "out/export.h"
@@ -36,6 +37,7 @@ static const char epilogue[] = "Examples:\n"
                                "  dem-clump grain.obj -e 3                     as many spheres as a 3 % gap needs\n"
                                "  dem-clump grain.obj -o - --format xyzr       spheres on standard output\n"
                                "  dem-clump scans/*.stl -o clumps/             a batch; the table on standard output\n"
+                               "  dem-clump convert rock.mol -o rock.json      a clump of another program\n"
                                "Exit status: 0 done, 1 failed, 2 wrong usage, 3 bad input, 4 cannot write, 130 interrupted.";
 
 // the choices as the library counts them
@@ -267,8 +269,18 @@ static int run(const cli_tool *tool, const arguments *a, const cli_texts *inputs
     return status;
 }
 
+// what stands before the options and has options of its own
+typedef struct subcommand {
+    const char *name;
+    int (*run)(int argc, char **argv);
+} subcommand;
+static const subcommand subcommands[] = {{"convert", clump_convert}};
+
 int main(int argc, char **argv)
 {
+    for (size_t i = 0; argc > 1 && i < sizeof subcommands / sizeof *subcommands; i++)
+        if (strcmp(argv[1], subcommands[i].name) == 0)
+            return subcommands[i].run(argc - 1, argv + 1);
     arguments a = default_arguments();
     const cli_option options[] = {
         {.help = "Spheres"},
