@@ -12,6 +12,7 @@
 #include "clump/pack.h"
 #include "clump_job.h"
 #include "clump_report.h"
+#include "clump_verify.h"
 #include "out/export.h"
 
 // what the option table fills
@@ -21,7 +22,7 @@ typedef struct arguments {
     double gap, size, density, wrap_detail;
     int effort, moments, mass_from, frame, repair, keep;
     bool inscribed, outer, split, methods;
-    const char *method, *unit;
+    const char *method, *unit, *exports;
     cli_texts outputs, formats;
 } arguments;
 
@@ -36,6 +37,8 @@ static const char epilogue[] = "Examples:\n"
                                "  dem-clump grain.obj -e 3                     as many spheres as a 3 % gap needs\n"
                                "  dem-clump grain.obj -o - --format xyzr       spheres on standard output\n"
                                "  dem-clump scans/*.stl -o clumps/             a batch; the table on standard output\n"
+                               "  dem-clump grain.obj --exports all -o out     for every program it knows\n"
+                               "  dem-clump verify grain.json                  what mass these programs really use\n"
                                "Exit status: 0 done, 1 failed, 2 wrong usage, 3 bad input, 4 cannot write, 130 interrupted.";
 
 // the choices as the library counts them
@@ -110,9 +113,65 @@ static const char *format_names(char text[256])
     return text;
 }
 
+static bool add_format(cli_texts *formats, const dem_exporter *exporter)
+{
+    for (size_t i = 0; i < formats->count; i++)
+        if (strcmp(formats->items[i], exporter->name) == 0)
+            return true;
+    if (!dem_grow(&formats->items, &formats->capacity, formats->count, sizeof *formats->items))
+        return false;
+    formats->items[formats->count++] = exporter->name;
+    return true;
+}
+
+// --exports: names between commas, or all, or engines, to the formats
+static int add_exports(const cli_tool *tool, const char *list, job_options *o, cli_texts *formats)
+{
+    char name[32], known[256];
+    for (const char *at = list;; at++) {
+        size_t length = strcspn(at, ",");
+        snprintf(name, sizeof name, "%.*s", (int)(length < sizeof name ? length : sizeof name - 1), at);
+        bool all = strcmp(name, "all") == 0, engines = strcmp(name, "engines") == 0, found = false;
+        o->every_format |= all;
+        for (const dem_exporter *const *e = dem_exporters(); *e; e++) {
+            if (!(all || (engines && (*e)->for_engine) || strcmp(name, (*e)->name) == 0))
+                continue;
+            found = true;
+            if (!add_format(formats, *e))
+                return cli_error(tool, &(dem_error){.code = DEM_NO_MEMORY, .text = "out of memory"});
+        }
+        if (!found)
+            return cli_wrong_usage(tool, "unknown format '%s' in --exports; use all, engines or some of:%s", name,
+                                   format_names(known));
+        at += length;
+        if (!*at)
+            break;
+    }
+    o->formats = *formats;
+    return 0;
+}
+
+// one file of one grain
+static int add_file(const cli_tool *tool, const job_options *o, const char *path, cli_texts *files)
+{
+    char known[256];
+    const dem_exporter *exporter = dem_exporter_of_file(path);
+    if (files->count < o->formats.count)
+        exporter = dem_exporter_find(o->formats.items[files->count]);
+    if (!exporter)
+        return cli_wrong_usage(tool, "the name '%s' does not tell the format; add --format, one of:%s", path,
+                               format_names(known));
+    if (exporter->parts && strcmp(path, "-") == 0)
+        return cli_wrong_usage(tool, "%s is a folder of files, it cannot go to standard output; name it with -o",
+                               exporter->name);
+    files->items[files->count++] = path;
+    return 0;
+}
+
 // -o: files of one grain, or a folder (and a table) of several; says what does not go together
 // (`files`, room for all of them)
-static int sort_outputs(const cli_tool *tool, job_options *o, bool several, cli_texts *files, const char **table)
+static int sort_outputs(const cli_tool *tool, job_options *o, bool exports, bool several, cli_texts *files,
+                        const char **table)
 {
     char known[256];
     for (size_t i = 0; i < o->formats.count; i++)
@@ -121,17 +180,23 @@ static int sort_outputs(const cli_tool *tool, job_options *o, bool several, cli_
                                    format_names(known));
     for (size_t i = 0; i < o->outputs.count; i++) {
         const char *path = o->outputs.items[i];
-        if (strcmp(path, "-") != 0 && is_folder(path))
+        const dem_exporter *exporter = dem_exporter_of_file(path);
+        bool standard = strcmp(path, "-") == 0;
+        if (!standard && is_folder(path) && !(exporter && exporter->parts))
             o->folder = path;
-        else if (dem_file_has_suffix(path, "csv"))
+        else if (!exporter && dem_file_has_suffix(path, "csv"))
             *table = path;
+        else if (exports && (standard || exporter))
+            return cli_wrong_usage(tool, "--exports writes into a folder, '%s' is a file; name a folder with -o DIR",
+                                   path);
+        else if (exports)
+            o->folder = path;
         else if (several)
             return cli_wrong_usage(tool, "several grains cannot all go to '%s'; name a folder with -o DIR/", path);
         else {
-            if (files->count >= o->formats.count && !dem_exporter_of_file(path))
-                return cli_wrong_usage(tool, "the name '%s' does not tell the format; add --format, one of:%s", path,
-                                       format_names(known));
-            files->items[files->count++] = path;
+            int status = add_file(tool, o, path, files);
+            if (status != 0)
+                return status;
         }
     }
     if (o->folder && files->count)
@@ -235,7 +300,7 @@ static int exit_status(const job_results *results, bool several)
     return cli_interrupted() ? DEM_INTERRUPTED : status;
 }
 
-static int run(const cli_tool *tool, const arguments *a, const cli_texts *inputs)
+static int run(const cli_tool *tool, arguments *a, const cli_texts *inputs)
 {
     job_options options = job_options_from(a);
     dem_error error;
@@ -245,10 +310,13 @@ static int run(const cli_tool *tool, const arguments *a, const cli_texts *inputs
         return cli_wrong_usage(tool, "--unit: %s", error.text);
     if (a->inscribed && a->outer)
         return cli_wrong_usage(tool, "--inscribed and --outer exclude each other");
+    int status = a->exports ? add_exports(tool, a->exports, &options, &a->formats) : 0;
+    if (status != 0)
+        return status;
     cli_texts files = {.items = calloc(a->outputs.count + 1, sizeof *files.items)};
     char **names = grain_names(inputs);
-    int status = files.items && names ? sort_outputs(tool, &options, several, &files, &table)
-                                      : cli_error(tool, &(dem_error){.code = DEM_NO_MEMORY, .text = "out of memory"});
+    status = files.items && names ? sort_outputs(tool, &options, a->exports, several, &files, &table)
+                                  : cli_error(tool, &(dem_error){.code = DEM_NO_MEMORY, .text = "out of memory"});
     if (status == 0) {
         cli_session session;
         job_results results = {0};
@@ -267,8 +335,18 @@ static int run(const cli_tool *tool, const arguments *a, const cli_texts *inputs
     return status;
 }
 
+// what stands before the options and has options of its own
+typedef struct subcommand {
+    const char *name;
+    int (*run)(int argc, char **argv);
+} subcommand;
+static const subcommand subcommands[] = {{"verify", clump_verify}};
+
 int main(int argc, char **argv)
 {
+    for (size_t i = 0; argc > 1 && i < sizeof subcommands / sizeof *subcommands; i++)
+        if (strcmp(argv[1], subcommands[i].name) == 0)
+            return subcommands[i].run(argc - 1, argv + 1);
     arguments a = default_arguments();
     const cli_option options[] = {
         {.help = "Spheres"},
@@ -300,8 +378,11 @@ int main(int argc, char **argv)
         {.help = "Output"},
         {"output", 'o', CLI_TEXTS, "FILE", "where to; the format follows the name; repeatable (default NAME.json)",
          &a.outputs, 0, 0},
-        {"format", 0, CLI_TEXTS, "NAME", "format where the name does not tell: json, xyzr, vtp, stl, png", &a.formats, 0,
-         0},
+        {"format", 0, CLI_TEXTS, "NAME", "format where the name does not tell: json, xyzr, vtp, stl, png, lammps, ...",
+         &a.formats, 0, 0},
+        {"exports", 0, CLI_TEXT, "LIST",
+         "these formats, as in pfc,liggghts, into the folder of -o; engines: those of other programs; all: every one",
+         &a.exports, 0, 0},
         {"frame", 0, CLI_CHOICE, frame_names,
          "frame of xyzr, vtp, stl (default principal; mesh: the file's own, in metres)", &a.frame, 0, 0},
         CLI_COMMON_OPTIONS(a.common),

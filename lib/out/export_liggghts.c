@@ -16,7 +16,7 @@ static void put_command(dem_buffer *out, const dem_clump_def *clump, const dem_e
     dem_plain_name id = dem_export_identifier(clump), file = dem_export_file_name(clump, options, "liggghts");
     dem_buffer_print(out, "%sfix pts_%s all particletemplate/multisphere 15485863 atom_type 1", COMMAND, id.text);
     put_value(out, " density constant ", clump->density);
-    dem_buffer_print(out, " nspheres %zu ntry 1000000 spheres file %s scale 1.0 type 1", clump->ball_count, file.text);
+    dem_buffer_print(out, " nspheres %zu ntry 100000 spheres file %s scale 1.0 type 1", clump->ball_count, file.text);
     put_value(out, " mass ", clump->mass);
     put_value(out, " inertia_tensor ", clump->inertia[0]);
     put_value(out, " 0 0 ", clump->inertia[1]);
@@ -44,7 +44,7 @@ static dem_status write_liggghts(const dem_clump *clump, const dem_export_option
         "  fix pdd all particledistribution/discrete 15485867 1 pts_NAME 1.0",
         "  fix ins all insert/pack seed 32452843 distributiontemplate pdd ... orientation random",
         "  fix integr all multisphere",
-        "to change: atom_type, the seed (a prime above 10000), ntry (tries of the volume it prints, no more),",
+        "to change: atom_type, the seed (a prime above 10000), ntry (its own sampling, of which nothing is used),",
         "type (numbers the templates from 1); scale must stay 1: it leaves mass and inertia as they are",
         "mass and inertia_tensor (Ixx Ixy Ixz Iyy Iyz Izz) are what it uses, the origin is the centre (use_density);",
         "compute erotate/multisphere and ke/multisphere are right for bodies, erotate/sphere and ke are not",
