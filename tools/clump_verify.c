@@ -3,6 +3,7 @@
 #define _GNU_SOURCE
 #include "clump_verify.h"
 
+#include <errno.h>
 #include <ftw.h>
 #include <math.h>
 #include <stdio.h>
@@ -101,24 +102,24 @@ static int remove_entry(const char *path, const struct stat *about, int kind, st
     return remove(path);
 }
 
-// the folder a program runs in: of its own in the one to keep, or for a while
+// the folder a program runs in, from the root: of its own in the one to keep, or for a while
 static dem_status make_folder(const arguments *a, const engine *e, char **folder, dem_error *error)
 {
     const char *temporary = getenv("TMPDIR");
-    int length = a->kept ? asprintf(folder, "%s/%s", a->kept, e->name)
-                         : asprintf(folder, "%s/dem-clump-XXXXXX", temporary && *temporary ? temporary : "/tmp");
-    if (length < 0) {
-        *folder = NULL;
+    char *path;
+    int length = a->kept ? asprintf(&path, "%s/%s", a->kept, e->name)
+                         : asprintf(&path, "%s/dem-clump-XXXXXX", temporary && *temporary ? temporary : "/tmp");
+    if (length < 0)
         return dem_fail_memory(error);
-    }
-    if (a->kept)
-        return dem_folder_create(*folder, error);
-    if (mkdtemp(*folder))
-        return DEM_OK;
-    dem_fail_at(error, DEM_CANNOT_WRITE, *folder, 0, "cannot make a folder; set TMPDIR to a place that can be written");
-    free(*folder);
-    *folder = NULL;
-    return DEM_CANNOT_WRITE;
+    dem_status status = a->kept ? dem_folder_create(path, error)
+                        : mkdtemp(path)
+                            ? DEM_OK
+                            : dem_fail_at(error, DEM_CANNOT_WRITE, path, 0,
+                                          "cannot make a folder; set TMPDIR to a place that can be written");
+    if (status == DEM_OK && !(*folder = realpath(path, NULL)))
+        status = dem_fail_at(error, DEM_CANNOT_WRITE, path, 0, "%s; choose another place", strerror(errno));
+    free(path);
+    return status;
 }
 
 static dem_status ask(const arguments *a, engine_question *q, verdict *v)

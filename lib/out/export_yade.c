@@ -23,24 +23,31 @@ static void put_function(dem_buffer *out, const char *id)
         "    \"\"\"Adds one clump: centre of mass, turn from the frame of the spheres, label or number of the "
         "material.\n"
         "    Returns its number and those of its spheres.\"\"\"\n"
-        "    position, number = Vector3(position), O.bodies.append\n"
         "    real = O.materials[material]\n"
         "    small = 1e-3 * min(r for _, r in %s_spheres)\n"
-        "    weightless, heavy = (FrictMat(density=d) for d in (0, %s_mass / 6 / (4 / 3 * math.pi * small**3)))\n"
-        "    bodies = [sphere(position + orientation * Vector3(c), r, material=weightless) for c, r in %s_spheres]\n"
+        "\n"
+        "    def ball(centre, radius, density):\n"
+        "        kind = type(real)(**{k: v for k, v in real.dict().items() if k not in ('id', 'label', 'density')})\n"
+        "        kind.density = density\n"
+        "        return sphere(Vector3(position) + orientation * Vector3(centre), radius, material=kind)\n"
+        "\n"
+        "    bodies = [ball(c, r, 0) for c, r in %s_spheres]\n"
         "    for axis in range(3):\n"
         "        second = sum(%s_inertia) / 2 - %s_inertia[axis]\n"
         "        arm = Vector3(0, 0, 0)\n"
         "        arm[axis] = math.sqrt(max(0, 3 * (second / %s_mass - small**2 / 5)))\n"
-        "        bodies += [sphere(position + orientation * (s * arm), small, material=heavy) for s in (1, -1)]\n"
+        "        heavy = %s_mass / 6 / (4 / 3 * math.pi * small**3)\n"
+        "        bodies += [ball(s * arm, small, heavy) for s in (1, -1)]\n"
         "    clump, members = O.bodies.appendClumped(bodies, discretization=0)\n"
-        "    for i in members[len(%s_spheres):]:\n"
+        "    for i in members[-6:]:\n"
         "        O.bodies.erase(i)\n"
-        "    members = members[:len(%s_spheres)]\n"
-        "    for i in members:\n"
-        "        O.bodies[i].material = real\n"
-        "    return clump, members\n",
-        id, id, id, id, id, id, id, id, id);
+        "    for i in members[:-6]:\n"
+        "        own = O.bodies[i]\n"
+        "        own.material = real\n"
+        "        own.state.mass = 4 / 3 * math.pi * own.shape.radius**3 * real.density\n"
+        "        own.state.inertia = 0.4 * own.state.mass * own.shape.radius**2 * Vector3(1, 1, 1)\n"
+        "    return clump, members[:-6]\n",
+        id, id, id, id, id, id, id);
 }
 
 static dem_status write_yade(const dem_clump *clump, const dem_export_options *options, dem_buffer *out,

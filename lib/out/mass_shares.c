@@ -20,9 +20,10 @@ enum {
     MOST_HALVINGS = 40,
 };
 
-static const double LEAST = 1e-3;     // of the share by volume: programs refuse atoms without mass
-static const double MET = 1e-13;      // residual, all sizes near 1
-static const double DAMPING = 1e-12;  // of the largest diagonal entry, where equations depend on each other
+static const double LEAST = 1e-3;      // of the share by volume: programs refuse atoms without mass
+static const double MET = 1e-13;       // residual, all sizes near 1
+static const double ROUNDING = 1e-14;  // of the cost, likewise
+static const double DAMPING = 1e-12;   // of the largest diagonal entry, where equations depend on each other
 
 typedef struct sharing {
     size_t count, equations;
@@ -109,7 +110,7 @@ static bool descend(const sharing *s, double *l, double newton[EQUATIONS][EQUATI
     for (int h = 0; h < MOST_HALVINGS; h++, part /= 2) {
         for (size_t k = 0; k < n; k++)
             trial[k] = l[k] + part * newton[k][n];
-        if (cost(s, trial) <= before) {
+        if (cost(s, trial) <= before + ROUNDING) {
             memcpy(l, trial, n * sizeof *l);
             return true;
         }
