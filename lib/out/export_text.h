@@ -17,7 +17,7 @@ void dem_export_put_comment(dem_buffer *out, const char *mark, const char *forma
 /// A comment line "what: values".
 void dem_export_put_figures(dem_buffer *out, const char *mark, const char *what, const double *values, size_t count);
 
-/// Density, volume, mass, centre, moments, and the way back to the mesh, as comments.
+/// Density, mass, centre, moments, and the way back to the mesh, as comments.
 void dem_export_put_mass(dem_buffer *out, const char *mark, const dem_clump_def *clump, dem_vec3 centre);
 
 /// How a file for another program begins.
