@@ -40,7 +40,9 @@ static void put_motion(dem_buffer *deck, const engine_question *q, int motion)
         dem_buffer_text(deck, " ");
         dem_buffer_number(deck, (i % 2 ? 10 : -10) * reach, 17);
     }
-    dem_buffer_text(deck, " units box\nfix in all insert/pack seed 32452843 distributiontemplate pdd insert_every once "
+    dem_buffer_text(deck, " units box volume_limit ");
+    dem_buffer_number(deck, reach * reach * reach, 3);
+    dem_buffer_text(deck, "\nfix in all insert/pack seed 32452843 distributiontemplate pdd insert_every once "
                           "overlapcheck no orientation constant 1 0 0 0 vel constant ");
     dem_buffer_number(deck, speed, 17);
     dem_buffer_print(deck, " 0 0 omega constant %d %d %d particles_in_region 1 region in\n", motion == 1, motion == 2,

@@ -10,12 +10,22 @@ static void put_value(dem_buffer *out, const char *before, double value)
     dem_buffer_number(out, value, 17);
 }
 
+// LIGGGHTS takes a template below 1e-12 m^3 for a mistake of units, unless it is told
+static void put_volume_limit(dem_buffer *out, double volume)
+{
+    if (volume >= 2e-12)
+        return;
+    dem_buffer_text(out, " volume_limit ");
+    dem_buffer_number(out, volume / 10, 3);
+}
+
 // a line that ends in '&' would go on, also a comment, so each command is one line
 static void put_command(dem_buffer *out, const dem_clump_def *clump, const dem_export_options *options)
 {
     dem_plain_name id = dem_export_identifier(clump), file = dem_export_file_name(clump, options, "liggghts");
     dem_buffer_print(out, "%sfix pts_%s all particletemplate/multisphere 15485863 atom_type 1", COMMAND, id.text);
     put_value(out, " density constant ", clump->density);
+    put_volume_limit(out, clump->mass / clump->density);
     dem_buffer_print(out, " nspheres %zu ntry 100000 spheres file %s scale 1.0 type 1", clump->ball_count, file.text);
     put_value(out, " mass ", clump->mass);
     put_value(out, " inertia_tensor ", clump->inertia[0]);
@@ -31,6 +41,7 @@ static void put_sphere_command(dem_buffer *out, const dem_clump_def *clump)
     double r = clump->balls[0].radius, volume = 4 * DEM_PI / 3 * r * r * r;
     dem_buffer_print(out, "%sfix pts_%s all particletemplate/sphere 15485863 atom_type 1", COMMAND, id.text);
     put_value(out, " density constant ", clump->mass / volume);
+    put_volume_limit(out, volume);
     put_value(out, " radius constant ", r);
     dem_buffer_text(out, "\n");
 }

@@ -24,7 +24,7 @@ static void put_function(dem_buffer *out, const char *id)
         "material.\n"
         "    Returns its number and those of its spheres.\"\"\"\n"
         "    real = O.materials[material]\n"
-        "    small = 1e-3 * min(r for _, r in %s_spheres)\n"
+        "    small = 1e-5 * min(r for _, r in %s_spheres)\n"
         "\n"
         "    def ball(centre, radius, density):\n"
         "        kind = type(real)(**{k: v for k, v in real.dict().items() if k not in ('id', 'label', 'density')})\n"
