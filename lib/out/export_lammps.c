@@ -23,10 +23,11 @@ static void put_use(dem_buffer *out, const dem_clump_def *clump, const dem_expor
         &(dem_export_head){MARK, "LAMMPS molecule for fix rigid/small; tried with the version of January 2022", none,
                            "mol"},
         clump, options);
-    dem_export_put_comment(out, MARK, "use, with `units si` and `atom_style hybrid sphere molecular`:");
+    dem_export_put_comment(
+        out, MARK, "use, with `units si`, `atom_style hybrid sphere molecular`, `mass 1 1.0` (wanted, not used):");
     dem_export_put_comment(out, MARK, "  molecule %s %s", id.text, file.text);
     dem_export_put_comment(out, MARK, "  fix body all rigid/small molecule mol %s reinit no", id.text);
-    dem_export_put_comment(out, MARK, "  fix fill all pour 1000 1 4767548 region slab mol %s rigid body", id.text);
+    dem_export_put_comment(out, MARK, "  fix fill all pour 1000 0 4767548 region slab mol %s rigid body", id.text);
     dem_export_put_comment(out, MARK, "  neigh_modify exclude molecule/intra all");
     dem_buffer_text(out, "#   comm_modify vel yes cutoff ");
     dem_buffer_number(out, 2.2 * dem_export_reach(clump), 3);
