@@ -148,6 +148,7 @@ static int add_exports(const cli_tool *tool, const char *list, job_options *o, c
             break;
     }
     o->formats = *formats;
+    o->into_folder = true;
     return 0;
 }
 
@@ -170,8 +171,7 @@ static int add_file(const cli_tool *tool, const job_options *o, const char *path
 
 // -o: files of one grain, or a folder (and a table) of several; says what does not go together
 // (`files`, room for all of them)
-static int sort_outputs(const cli_tool *tool, job_options *o, bool exports, bool several, cli_texts *files,
-                        const char **table)
+static int sort_outputs(const cli_tool *tool, job_options *o, bool several, cli_texts *files, const char **table)
 {
     char known[256];
     for (size_t i = 0; i < o->formats.count; i++)
@@ -186,10 +186,10 @@ static int sort_outputs(const cli_tool *tool, job_options *o, bool exports, bool
             o->folder = path;
         else if (!exporter && dem_file_has_suffix(path, "csv"))
             *table = path;
-        else if (exports && (standard || exporter))
+        else if (o->into_folder && (standard || exporter))
             return cli_wrong_usage(tool, "--exports writes into a folder, '%s' is a file; name a folder with -o DIR",
                                    path);
-        else if (exports)
+        else if (o->into_folder)
             o->folder = path;
         else if (several)
             return cli_wrong_usage(tool, "several grains cannot all go to '%s'; name a folder with -o DIR/", path);
@@ -315,7 +315,7 @@ static int run(const cli_tool *tool, arguments *a, const cli_texts *inputs)
         return status;
     cli_texts files = {.items = calloc(a->outputs.count + 1, sizeof *files.items)};
     char **names = grain_names(inputs);
-    status = files.items && names ? sort_outputs(tool, &options, a->exports, several, &files, &table)
+    status = files.items && names ? sort_outputs(tool, &options, several, &files, &table)
                                   : cli_error(tool, &(dem_error){.code = DEM_NO_MEMORY, .text = "out of memory"});
     if (status == 0) {
         cli_session session;
