@@ -35,7 +35,8 @@ bool engine_find(const engine *e, char path[256])
     for (const char *at = folders; at && *at;) {
         size_t length = strcspn(at, ":");
         for (const char *const *program = e->programs; *program; program++)
-            if (snprintf(path, 256, "%.*s/%s", (int)length, at, *program) < 256 && length && access(path, X_OK) == 0)
+            if (*at == '/' && snprintf(path, 256, "%.*s/%s", (int)length, at, *program) < 256 &&
+                access(path, X_OK) == 0)
                 return true;
         at += length + (at[length] == ':');
     }
@@ -96,7 +97,7 @@ static void become(void *user, int out)
 }
 
 // the program's environment: ours, but on one thread and with its temporary files in the folder
-static bool set_variables(command *c, char *temporary)
+static void set_variables(command *c, char *temporary)
 {
     static char one_thread[] = "OMP_NUM_THREADS=1";
     static const char *const replaced[] = {"TMPDIR=", "OMP_NUM_THREADS=", "DISPLAY=", NULL};
@@ -111,13 +112,14 @@ static bool set_variables(command *c, char *temporary)
             c->variables[count++] = *v;
     }
     c->variables[count] = NULL;
-    return true;
 }
 
 // the end of what it printed, as one line
 static const char *last_words(const dem_buffer *printed, char text[LAST_WORDS + 1])
 {
     size_t size = printed->size < LAST_WORDS ? printed->size : LAST_WORDS, length = 0;
+    if (size == 0)
+        return "none";
     for (const char *p = printed->data + printed->size - size; size--; p++) {
         bool blank = (unsigned char)*p <= ' ';
         if (!blank)
@@ -126,7 +128,7 @@ static const char *last_words(const dem_buffer *printed, char text[LAST_WORDS + 
             text[length++] = ' ';
     }
     text[length] = 0;
-    return length ? text : "nothing";
+    return length ? text : "none";
 }
 
 // the word behind the banner
@@ -203,33 +205,27 @@ static const char *line_end(const char *at, const char *end)
     return newline ? newline : end;
 }
 
-static dem_status read_energies(const dem_buffer *printed, int motion, engine_answer *answer, dem_error *error)
+// the last line of four numbers between the marks
+static bool find_energies(const dem_buffer *printed, int motion, engine_motion *m)
 {
     char mark[64];
     snprintf(mark, sizeof mark, "\n" ENGINE_MARK " %d\n", motion);
-    const char *at = printed->size ? strstr(printed->data, mark) : NULL, *end = printed->data + printed->size;
-    engine_motion *m = &answer->motions[motion];
+    const char *at = printed->size ? strstr(printed->data, mark) : NULL;
+    if (!at)
+        return false;
+    at += strlen(mark);
+    const char *stop = strstr(at, "\n" ENGINE_END), *end = stop ? stop : printed->data + printed->size;
     bool found = false;
-    char words[LAST_WORDS + 1];
-    if (at) {
-        const char *next = strstr(at + strlen(mark), "\n" ENGINE_END);
-        end = next ? next : end;
-        for (at += strlen(mark); at < end; at = line_end(at, end) + 1) {
-            double row[4];
-            const char *stop = read_numbers(at, line_end(at, end), row, 4);
-            while (stop && *stop == ' ')
-                stop++;
-            if (!stop || (*stop != '\n' && *stop != 0 && *stop != '\r'))
-                continue;
-            m->translating = row[2];
-            m->turning = row[3];
-            found = true;
-        }
+    for (; at < end; at = line_end(at, end) + 1) {
+        double row[4];
+        const char *behind = read_numbers(at, line_end(at, end), row, 4);
+        if (!behind || behind[strspn(behind, " \r")] != '\n')
+            continue;
+        m->translating = row[2];
+        m->turning = row[3];
+        found = true;
     }
-    if (!found || !isfinite(m->translating) || !isfinite(m->turning))
-        return dem_fail(error, DEM_FAILED, "%s told no energy of motion %d; its last words: %s", answer->program,
-                        motion, last_words(printed, words));
-    return DEM_OK;
+    return found && isfinite(m->translating) && isfinite(m->turning);
 }
 
 static dem_status parse_spheres(const engine_question *question, const dem_buffer *text, const char *file,
@@ -277,9 +273,11 @@ dem_status engine_read(const engine_question *question, const dem_buffer *printe
         engine_motion *m = &answer->motions[motion];
         if (isnan(m->rate))
             continue;
-        char file[32];
+        char file[32], words[LAST_WORDS + 1];
         snprintf(file, sizeof file, "motion%d.dump", motion);
-        DEM_TRY(read_energies(printed, motion, answer, error));
+        if (!find_energies(printed, motion, m))
+            return dem_fail(error, DEM_FAILED, "%s told no energy of motion %d; its last words: %s", answer->program,
+                            motion, last_words(printed, words));
         DEM_TRY(engine_read_spheres(question, file, m, error));
     }
     return DEM_OK;

@@ -41,7 +41,7 @@ typedef struct engine {
 
 extern const engine engine_lammps, engine_liggghts, engine_yade;
 
-/// Finds the program in PATH; false: it is not there.
+/// Finds the program in the absolute folders of PATH (it runs in another folder); false: it is not there.
 bool engine_find(const engine *e, char path[256]);
 
 /// How long the clump moves, at a speed of its size in a second or a rate of 1 rad/s: nothing depends on where it is.
@@ -56,7 +56,7 @@ dem_status engine_export(const engine_question *question, const char *format, co
 dem_status engine_write(const engine_question *question, const char *file, dem_buffer *deck, dem_error *error);
 
 /// Runs the program there with these arguments (NULL behind the last) and gathers what it prints; also sets the
-/// version. Releases nothing on success.
+/// version. `printed` is to be released in any case.
 dem_status engine_run(const engine_question *question, const engine *e, engine_answer *answer,
                       const char *const *arguments, dem_buffer *printed, dem_error *error);
 

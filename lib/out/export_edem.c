@@ -7,8 +7,7 @@ static dem_status write_edem(const dem_clump *clump, const dem_export_options *o
                              dem_error *error)
 {
     static const char *const use[] = {
-        "untested: written after its help pages. EDEM calculates mass and inertia from the spheres by itself, within "
-        "the",
+        "untested: written after its help pages. EDEM calculates mass and inertia from the spheres by itself, with the",
         "error of its sampling; so set the particle's properties by hand instead: mass, volume and moments of inertia",
         "below. The centre must stay at the origin and the axes as they are (Add Multi-Sphere Particles in its help).",
         "use: set the project's length unit to m, add as many spheres to the particle as there are rows below,",

@@ -9,8 +9,7 @@ static dem_status write_kratos(const dem_clump *clump, const dem_export_options 
 {
     static const char *const use[] = {
         "untested: written after its cluster_file_reader.py",
-        "use: name this file in the mdpa of the inlet or of the clusters; the material (PARTICLE_DENSITY) must have "
-        "the",
+        "use: name this file in the mdpa of the inlet or of the clusters; PARTICLE_DENSITY of the material must be the",
         "density below for the mass below. Size is the diameter of the sphere about the centre of mass that holds all",
         "spheres: a cluster of another diameter D is scaled by D / Size, its mass with the third power", NULL};
     dem_clump_def def = dem_clump_view(clump);

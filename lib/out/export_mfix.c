@@ -44,9 +44,8 @@ static dem_status write_mfix(const dem_clump *clump, const dem_export_options *o
 {
     static const char *const use[] = {
         "untested, experimental: written after its Python scripts of 2025",
-        "use: copy to gsp_config.csv in the project, pid (last column) is the number of the solids phase, the diameter "
-        "of",
-        "the phase (d_p0) the bounding diameter below. Should MFiX not read it, take these comments away.",
+        "use: copy to gsp_config.csv in the project; pid (last column) is the number of the solids phase, whose",
+        "diameter (d_p0) is the bounding diameter below. Should MFiX not read it, take these comments away.",
         "MFiX has no way to give mass and inertia, it sums over the spheres with the density of the phase.",
         "rel_sa is the surface of each sphere that shows; heat conduction between the spheres is left out (-1, 0).",
         NULL};

@@ -19,8 +19,7 @@ static dem_status write_pfc(const dem_clump *clump, const dem_export_options *op
                             dem_error *error)
 {
     static const char *const use[] = {
-        "untested: written after the manual of PFC 6 to 9; for PFC 5 take the brackets and commas of the positions "
-        "away",
+        "untested: written after the manual of PFC 6 to 9; for PFC 5 take away the brackets and commas of positions",
         "use: program call 'FILE', then clump replicate, clump generate or clump distribute ... template 'NAME'",
         "a clump weighs volume x its density: clump attribute density, with the density below gives the mass below",
         "volume and inertia (11 22 33 12 13 23) stand at unit density [m^3, m^5], as PFC wants them",

@@ -20,8 +20,7 @@ static void put_function(dem_buffer *out, const char *id)
     dem_buffer_print(
         out,
         "\n\ndef add_%s(position, orientation=Quaternion.Identity, material=-1):\n"
-        "    \"\"\"Adds one clump: centre of mass, turn from the frame of the spheres, label or number of the "
-        "material.\n"
+        "    \"\"\"Adds one clump: centre of mass, turn from the frame of the spheres, the material's label.\n"
         "    Returns its number and those of its spheres.\"\"\"\n"
         "    real = O.materials[material]\n"
         "    small = 1e-5 * min(r for _, r in %s_spheres)\n"
