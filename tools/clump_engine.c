@@ -228,15 +228,36 @@ static bool find_energies(const dem_buffer *printed, int motion, engine_motion *
     return found && isfinite(m->translating) && isfinite(m->turning);
 }
 
-static dem_status parse_spheres(const engine_question *question, const dem_buffer *text, const char *file,
-                                engine_motion *motion, dem_error *error)
+// the rows of the last table, or NULL
+static const char *last_table(const dem_buffer *text, const char *what)
 {
-    const char *end = text->data + text->size, *at = strstr(text->data, "ITEM: ATOMS"), *next;
-    size_t count = question->def.ball_count, seen = 0;
-    // the last of several dumps
-    while (at && (next = strstr(at + 1, "ITEM: ATOMS")))
+    const char *at = strstr(text->data, what), *next;
+    while (at && (next = strstr(at + 1, what)))
         at = next;
-    for (at = at ? line_end(at, end) + 1 : end; at < end; at = line_end(at, end) + 1) {
+    const char *end = text->data + text->size;
+    return at && line_end(at, end) < end ? line_end(at, end) + 1 : NULL;
+}
+
+static dem_status read_dump(const engine_question *question, const char *file, dem_buffer *text, dem_error *error)
+{
+    char *path = path_of(question, file);
+    if (!path)
+        return dem_fail_memory(error);
+    dem_status status = dem_file_read(path, text, error);
+    free(path);
+    if (status == DEM_BAD_INPUT)  // it is the program's fault, not that of our input
+        status = error->code = DEM_FAILED;
+    return status;
+}
+
+dem_status engine_read_spheres(const engine_question *question, const char *file, engine_motion *motion,
+                               dem_error *error)
+{
+    dem_buffer text;
+    size_t count = question->def.ball_count, seen = 0;
+    DEM_TRY(read_dump(question, file, &text, error));
+    const char *end = text.data + text.size, *at = last_table(&text, "ITEM: ATOMS");
+    for (; at && at < end; at = line_end(at, end) + 1) {
         double row[7];
         if (!read_numbers(at, line_end(at, end), row, 7) || !(row[0] >= 1 && row[0] <= (double)count))
             break;
@@ -245,25 +266,19 @@ static dem_status parse_spheres(const engine_question *question, const dem_buffe
         motion->velocity[i] = (dem_vec3){row[4], row[5], row[6]};
         seen++;
     }
+    dem_buffer_release(&text);
     return seen == count ? DEM_OK : dem_fail(error, DEM_FAILED, "wrote %zu spheres to %s, not %zu", seen, file, count);
 }
 
-dem_status engine_read_spheres(const engine_question *question, const char *file, engine_motion *motion,
-                               dem_error *error)
+dem_status engine_read_row(const engine_question *question, const char *file, double *numbers, int count,
+                           dem_error *error)
 {
-    char *path = path_of(question, file);
-    if (!path)
-        return dem_fail_memory(error);
     dem_buffer text;
-    dem_status status = dem_file_read(path, &text, error);
-    free(path);
-    if (status != DEM_OK) {
-        error->code = DEM_FAILED;
-        return DEM_FAILED;
-    }
-    status = parse_spheres(question, &text, file, motion, error);
+    DEM_TRY(read_dump(question, file, &text, error));
+    const char *end = text.data + text.size, *at = last_table(&text, "ITEM: ENTRIES");
+    bool read = at && read_numbers(at, line_end(at, end), numbers, count);
     dem_buffer_release(&text);
-    return status;
+    return read ? DEM_OK : dem_fail(error, DEM_FAILED, "wrote no row of %d numbers to %s", count, file);
 }
 
 dem_status engine_read(const engine_question *question, const dem_buffer *printed, engine_answer *answer,

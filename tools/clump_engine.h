@@ -20,6 +20,7 @@ typedef struct engine_answer {
     char version[64];
     double seconds;
     engine_motion motions[ENGINE_MOTIONS];
+    double told[3];  ///< moments it says it uses, for turns that could not be had [kg m^2]; NAN: unknown
 } engine_answer;
 
 typedef struct engine_question {
@@ -71,5 +72,8 @@ dem_status engine_read(const engine_question *question, const dem_buffer *printe
 /// The same of one dump.
 dem_status engine_read_spheres(const engine_question *question, const char *file, engine_motion *motion,
                                dem_error *error);
+/// The numbers in the first row of the last table of a dump.
+dem_status engine_read_row(const engine_question *question, const char *file, double *numbers, int count,
+                           dem_error *error);
 
 #endif

@@ -3,6 +3,7 @@
 // motion and set turning by forces on its atoms for one step: they add up to nothing but a moment about the axis.
 #include <math.h>
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 
 #include "clump_engine.h"
@@ -152,6 +153,20 @@ static void put_forces(dem_buffer *deck, const engine_question *q, const dem_vec
     dem_buffer_text(deck, "fix turn all addforce v_fx v_fy v_fz\n");
 }
 
+static int ascending(const void *a, const void *b)
+{
+    double x = *(const double *)a, y = *(const double *)b;
+    return (x > y) - (x < y);
+}
+
+// forces on spheres in a line cannot turn the body about every axis: there is only what LAMMPS says
+static dem_status read_told(const engine_question *q, engine_answer *answer, dem_error *error)
+{
+    DEM_TRY(engine_read_row(q, "told.dump", answer->told, 3, error));
+    qsort(answer->told, 3, sizeof *answer->told, ascending);
+    return DEM_OK;
+}
+
 static dem_status move(const engine_question *q, engine_answer *answer, const engine_motion *rest, dem_error *error)
 {
     static const char *const arguments[] = {"-in", "in.lammps", "-log", "none", NULL};
@@ -166,6 +181,10 @@ static dem_status move(const engine_question *q, engine_answer *answer, const en
         if (motion)
             put_forces(&deck, q, rest->at, corner, motion - 1);
         put_dump(&deck, file);
+        if (!turns)
+            dem_buffer_text(&deck, "compute told all rigid/local body inertiax inertiay inertiaz\n"
+                                   "dump told all local 1 told.dump c_told[*]\n"
+                                   "dump_modify told format float %.17g\n");
         dem_buffer_print(&deck, "print \"" ENGINE_MARK " %d\"\nrun 1\nprint \"" ENGINE_END "\"\n", motion);
     }
     DEM_TRY(engine_write(q, "in.lammps", &deck, error));
@@ -174,6 +193,8 @@ static dem_status move(const engine_question *q, engine_answer *answer, const en
         answer->motions[motion].rate = motion == 0 ? engine_reach(q) : turns ? 1 : NAN;
     if (status == DEM_OK)
         status = engine_read(q, &printed, answer, error);
+    if (status == DEM_OK && !turns)
+        status = read_told(q, answer, error);
     // how fast it came to turn is what its spheres do
     for (int motion = 1; status == DEM_OK && turns && motion < ENGINE_MOTIONS; motion++) {
         engine_motion *m = &answer->motions[motion];

@@ -34,6 +34,7 @@ typedef struct arguments {
 typedef struct quantity {
     const char *name, *unit;
     double ours, theirs, difference;  // NAN: not known
+    bool told;                        // not measured, but what the program says
 } quantity;
 
 // what came of one program
@@ -74,10 +75,13 @@ static void set_quantities(const engine_question *q, verdict *v)
         const engine_motion *m = &v->answer.motions[k];
         double ours = k == 0 ? q->def.mass : q->def.inertia[k - 1];
         double theirs = 2 * (k == 0 ? m->translating : m->turning) / (m->rate * m->rate);
-        v->quantities[k] = (quantity){names[k], k == 0 ? "kg" : "kg m^2", ours, theirs, theirs / ours - 1};
+        bool told = k > 0 && isnan(theirs) && !isnan(v->answer.told[k - 1]);
+        if (told)
+            theirs = v->answer.told[k - 1];
+        v->quantities[k] = (quantity){names[k], k == 0 ? "kg" : "kg m^2", ours, theirs, theirs / ours - 1, told};
     }
     double off = centre_offset(q, &v->answer);
-    v->quantities[4] = (quantity){"centre", "m", 0, off, off / engine_reach(q)};
+    v->quantities[4] = (quantity){"centre", "m", 0, off, off / engine_reach(q), false};
     for (int k = 0; k < QUANTITIES; k++)
         v->agrees = v->agrees && !(fabs(v->quantities[k].difference) > TOLERANCE);
     v->agrees = v->agrees && fabs(v->quantities[0].difference) <= TOLERANCE;  // known in any case
@@ -86,6 +90,7 @@ static void set_quantities(const engine_question *q, verdict *v)
 static dem_status take_room(engine_answer *answer, size_t count, dem_error *error)
 {
     bool room = true;
+    answer->told[0] = answer->told[1] = answer->told[2] = NAN;
     for (int k = 0; k < ENGINE_MOTIONS; k++) {
         answer->motions[k].at = dem_alloc(count, sizeof *answer->motions[k].at);
         answer->motions[k].velocity = dem_alloc(count, sizeof *answer->motions[k].velocity);
@@ -151,7 +156,10 @@ static const char *number(char text[32], double value)
 
 static const char *word(const quantity *q)
 {
-    return isnan(q->difference) ? "not measured" : fabs(q->difference) <= TOLERANCE ? "agrees" : "DIFFERS";
+    bool agrees = fabs(q->difference) <= TOLERANCE;
+    if (q->told)
+        return agrees ? "agrees, as it says" : "DIFFERS, as it says";
+    return isnan(q->difference) ? "not measured" : agrees ? "agrees" : "DIFFERS";
 }
 
 static void tell(dem_buffer *out, const verdict *v)
@@ -201,6 +209,7 @@ static void put_verdict(dem_json_writer *w, const verdict *v)
         dem_json_put_number(w, "clump", q->ours);
         dem_json_put_number(w, "engine", q->theirs);
         dem_json_put_number(w, "difference", q->difference);
+        dem_json_put_bool(w, "measured", !q->told && !isnan(q->difference));
         dem_json_close(w, '}');
     }
     dem_json_close(w, ']');
