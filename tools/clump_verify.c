@@ -180,8 +180,8 @@ static void tell(dem_buffer *out, const verdict *v)
 
 static void tell_all(dem_buffer *out, const char *path, const dem_clump_def *def, const verdict *verdicts, int count)
 {
-    dem_buffer_print(out, "%s: %zu spheres; what each program really uses, from the kinetic energy it reports\n\n",
-                     path, def->ball_count);
+    dem_buffer_print(out, "%s: %zu sphere%s; what each program really uses, from the kinetic energy it reports\n\n",
+                     path, def->ball_count, def->ball_count == 1 ? "" : "s");
     dem_buffer_print(out, "  %-34s %-15s %17s %17s %11s\n", "program", "quantity", "clump", "program", "difference");
     for (int i = 0; i < count; i++)
         tell(out, &verdicts[i]);
