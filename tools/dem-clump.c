@@ -10,6 +10,7 @@
 #include "base/units.h"
 #include "cli.h"
 #include "clump/pack.h"
+#include "clump_convert.h"
 #include "clump_job.h"
 #include "clump_report.h"
 #include "clump_verify.h"
@@ -39,6 +40,7 @@ static const char epilogue[] = "Examples:\n"
                                "  dem-clump scans/*.stl -o clumps/             a batch; the table on standard output\n"
                                "  dem-clump grain.obj --exports all -o out     for every program it knows\n"
                                "  dem-clump verify grain.json                  what mass these programs really use\n"
+                               "  dem-clump convert rock.mol -o rock.json      a clump of another program\n"
                                "Exit status: 0 done, 1 failed, 2 wrong usage, 3 bad input, 4 cannot write, 130 interrupted.";
 
 // the choices as the library counts them
@@ -340,7 +342,7 @@ typedef struct subcommand {
     const char *name;
     int (*run)(int argc, char **argv);
 } subcommand;
-static const subcommand subcommands[] = {{"verify", clump_verify}};
+static const subcommand subcommands[] = {{"convert", clump_convert}, {"verify", clump_verify}};
 
 int main(int argc, char **argv)
 {
