@@ -3,7 +3,6 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <sys/stat.h>
 
 #include "base/file.h"
 #include "base/memory.h"
@@ -12,6 +11,7 @@
 #include "clump/pack.h"
 #include "clump_convert.h"
 #include "clump_job.h"
+#include "clump_outputs.h"
 #include "clump_report.h"
 #include "clump_verify.h"
 #include "out/export.h"
@@ -100,115 +100,6 @@ static job_options job_options_from(const arguments *a)
     return o;
 }
 
-static bool is_folder(const char *path)
-{
-    struct stat about_path;
-    size_t length = strlen(path);
-    return (length && path[length - 1] == '/') || (stat(path, &about_path) == 0 && S_ISDIR(about_path.st_mode));
-}
-
-static const char *format_names(char text[256])
-{
-    *text = 0;
-    for (const dem_exporter *const *e = dem_exporters(); *e; e++)
-        snprintf(text + strlen(text), 256 - strlen(text), " %s", (*e)->name);
-    return text;
-}
-
-static bool add_format(cli_texts *formats, const dem_exporter *exporter)
-{
-    for (size_t i = 0; i < formats->count; i++)
-        if (strcmp(formats->items[i], exporter->name) == 0)
-            return true;
-    if (!dem_grow(&formats->items, &formats->capacity, formats->count, sizeof *formats->items))
-        return false;
-    formats->items[formats->count++] = exporter->name;
-    return true;
-}
-
-// --exports: names between commas, or all, or engines, to the formats
-static int add_exports(const cli_tool *tool, const char *list, job_options *o, cli_texts *formats)
-{
-    char name[32], known[256];
-    for (const char *at = list;; at++) {
-        size_t length = strcspn(at, ",");
-        snprintf(name, sizeof name, "%.*s", (int)(length < sizeof name ? length : sizeof name - 1), at);
-        bool all = strcmp(name, "all") == 0, engines = strcmp(name, "engines") == 0, found = false;
-        o->every_format |= all;
-        for (const dem_exporter *const *e = dem_exporters(); *e; e++) {
-            if (!(all || (engines && (*e)->for_engine) || strcmp(name, (*e)->name) == 0))
-                continue;
-            found = true;
-            if (!add_format(formats, *e))
-                return cli_error(tool, &(dem_error){.code = DEM_NO_MEMORY, .text = "out of memory"});
-        }
-        if (!found)
-            return cli_wrong_usage(tool, "unknown format '%s' in --exports; use all, engines or some of:%s", name,
-                                   format_names(known));
-        at += length;
-        if (!*at)
-            break;
-    }
-    o->formats = *formats;
-    o->into_folder = true;
-    return 0;
-}
-
-// one file of one grain
-static int add_file(const cli_tool *tool, const job_options *o, const char *path, cli_texts *files)
-{
-    char known[256];
-    const dem_exporter *exporter = dem_exporter_of_file(path);
-    if (files->count < o->formats.count)
-        exporter = dem_exporter_find(o->formats.items[files->count]);
-    if (!exporter)
-        return cli_wrong_usage(tool, "the name '%s' does not tell the format; add --format, one of:%s", path,
-                               format_names(known));
-    if (exporter->parts && strcmp(path, "-") == 0)
-        return cli_wrong_usage(tool, "%s is a folder of files, it cannot go to standard output; name it with -o",
-                               exporter->name);
-    files->items[files->count++] = path;
-    return 0;
-}
-
-// -o: files of one grain, or a folder (and a table) of several; says what does not go together
-// (`files`, room for all of them)
-static int sort_outputs(const cli_tool *tool, job_options *o, bool several, cli_texts *files, const char **table)
-{
-    char known[256];
-    for (size_t i = 0; i < o->formats.count; i++)
-        if (!dem_exporter_find(o->formats.items[i]))
-            return cli_wrong_usage(tool, "unknown format '%s'; use one of:%s", o->formats.items[i],
-                                   format_names(known));
-    for (size_t i = 0; i < o->outputs.count; i++) {
-        const char *path = o->outputs.items[i];
-        const dem_exporter *exporter = dem_exporter_of_file(path);
-        bool standard = strcmp(path, "-") == 0;
-        if (!standard && is_folder(path) && !(exporter && exporter->parts))
-            o->folder = path;
-        else if (!exporter && dem_file_has_suffix(path, "csv"))
-            *table = path;
-        else if (o->into_folder && (standard || exporter))
-            return cli_wrong_usage(tool, "--exports writes into a folder, '%s' is a file; name a folder with -o DIR",
-                                   path);
-        else if (o->into_folder)
-            o->folder = path;
-        else if (several)
-            return cli_wrong_usage(tool, "several grains cannot all go to '%s'; name a folder with -o DIR/", path);
-        else {
-            int status = add_file(tool, o, path, files);
-            if (status != 0)
-                return status;
-        }
-    }
-    if (o->folder && files->count)
-        return cli_wrong_usage(tool, "give -o either a folder or files, not both");
-    if (o->folder && mkdir(o->folder, 0777) != 0 && !is_folder(o->folder))
-        return cli_error(tool, &(dem_error){.code = DEM_CANNOT_WRITE, .text = "cannot make the folder for -o"});
-    o->outputs = *files;
-    return 0;
-}
-
 // output names of a batch: the input's name without folder and suffix, numbered where two are the same
 static char **grain_names(const cli_texts *inputs)
 {
@@ -287,21 +178,6 @@ static int write_report(const cli_tool *tool, const arguments *a, const job_opti
     return text.size ? cli_print(tool, &text) : 0;
 }
 
-static int exit_status(const job_results *results, bool several)
-{
-    int status = 0;
-    for (size_t i = 0; i < results->count; i++) {
-        int code = (int)results->items[i].status;
-        if (code == DEM_NO_MEMORY)
-            code = DEM_FAILED;
-        if (code == DEM_UNAVAILABLE || (code != 0 && several))
-            code = DEM_BAD_INPUT;
-        if (code != 0)
-            status = code;
-    }
-    return cli_interrupted() ? DEM_INTERRUPTED : status;
-}
-
 static int run(const cli_tool *tool, arguments *a, const cli_texts *inputs)
 {
     job_options options = job_options_from(a);
@@ -312,12 +188,12 @@ static int run(const cli_tool *tool, arguments *a, const cli_texts *inputs)
         return cli_wrong_usage(tool, "--unit: %s", error.text);
     if (a->inscribed && a->outer)
         return cli_wrong_usage(tool, "--inscribed and --outer exclude each other");
-    int status = a->exports ? add_exports(tool, a->exports, &options, &a->formats) : 0;
+    int status = a->exports ? outputs_exports(tool, a->exports, &options, &a->formats) : 0;
     if (status != 0)
         return status;
     cli_texts files = {.items = calloc(a->outputs.count + 1, sizeof *files.items)};
     char **names = grain_names(inputs);
-    status = files.items && names ? sort_outputs(tool, &options, several, &files, &table)
+    status = files.items && names ? outputs_sort(tool, &options, several, &files, &table)
                                   : cli_error(tool, &(dem_error){.code = DEM_NO_MEMORY, .text = "out of memory"});
     if (status == 0) {
         cli_session session;
@@ -327,7 +203,7 @@ static int run(const cli_tool *tool, arguments *a, const cli_texts *inputs)
         cli_end(&session);
         status = write_report(tool, a, &options, &results, several || a->split, table);
         if (status == 0)
-            status = exit_status(&results, several);
+            status = outputs_status(&results, several);
         job_results_release(&results);
     }
     for (size_t i = 0; names && i < inputs->count; i++)

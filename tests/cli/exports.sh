@@ -47,6 +47,11 @@ diff <(sed 's/a\.mol/b.lammps/' a.mol) b.lammps >/dev/null || fail "a.mol and b.
 run 0 dem-clump "$grain" $few -o - --format edem
 [ "$(grep -vc '^#' out)" = 4 ] || fail "$ran: $(cat out)"
 
+# without packing again
+run 0 dem-clump convert some/sand.json --exports engines -o again
+files again $engines
+diff some/sand.p3dat again/sand.p3dat >/dev/null || fail "a clump that was read gives another file"
+
 # what does not go together
 run 2 dem-clump "$grain" --exports pfc,magic -o x
 mentions "unknown format 'magic'"
