@@ -36,11 +36,40 @@ static void formats_are_found_by_name_and_by_file(void **state)
         snprintf(path, sizeof path, "out.d/grain.%s", (*e)->suffix);
         check(dem_exporter_find((*e)->name) == *e);
         check(dem_exporter_of_file(path) == *e);
-        check((*e)->about[0] && (*e)->write);
+        check((*e)->about[0] && !(*e)->write == ((*e)->parts != NULL));
+        snprintf(path, sizeof path, "out.d/grain.%s", (*e)->name);
+        check(dem_exporter_of_file(path) == *e);
     }
-    check(count == 5);
+    check(count == 14);
     check(dem_exporter_of_file("A.JSON") == dem_exporter_find("json"));
     check(!dem_exporter_find("jpeg") && !dem_exporter_of_file("json") && !dem_exporter_of_file("a.json/b"));
+    check(!dem_exporter_of_file("a.py") && !dem_exporter_of_file("a.csv") && !dem_exporter_of_file("a.txt"));
+}
+
+static void files_of_a_batch_never_collide(void **state)
+{
+    (void)state;
+    // no suffix is the end of another one, so that grain names with dots do not matter
+    for (const dem_exporter *const *a = dem_exporters(); *a; a++)
+        for (const dem_exporter *const *b = dem_exporters(); *b; b++) {
+            char path[64];
+            snprintf(path, sizeof path, "grain.%s", (*a)->suffix);
+            check(a == b || dem_exporter_of_file(path) != *b);
+            check(a == b || !dem_file_has_suffix(path, (*b)->suffix));
+        }
+}
+
+static void the_stem_of_a_name_is_before_what_tells_the_format(void **state)
+{
+    (void)state;
+    static const struct {
+        const char *format, *path;
+        size_t stem;
+    } cases[] = {{"json", "out.d/a.json", 7},     {"yade", "out.d/a.b.yade.py", 9}, {"yade", "a.YADE", 1},
+                 {"yade", "a.py", 1},             {"lammps", "a.mol", 1},           {"xyzr", "out.d/plain", 11},
+                 {"deme", "out.d/a.deme.csv", 7}, {"mercury", "a.mercury", 1}};
+    for (size_t i = 0; i < sizeof cases / sizeof *cases; i++)
+        check(dem_exporter_stem(dem_exporter_find(cases[i].format), cases[i].path) == cases[i].stem);
 }
 
 static void json_is_the_clump_file(void **state)
@@ -260,6 +289,8 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(formats_are_found_by_name_and_by_file),
+        cmocka_unit_test(files_of_a_batch_never_collide),
+        cmocka_unit_test(the_stem_of_a_name_is_before_what_tells_the_format),
         cmocka_unit_test(json_is_the_clump_file),
         cmocka_unit_test(xyzr_gives_the_spheres_back_without_loss),
         cmocka_unit_test(the_mesh_frame_is_that_of_the_file),

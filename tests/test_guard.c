@@ -151,6 +151,55 @@ static void what_the_child_writes_is_read(void **state)
     free(much);
 }
 
+// writes a file longer than its limit, or a short one
+static void write_file(void *user, int out)
+{
+    const size_t *size = user;
+    FILE *file = tmpfile();
+    for (size_t i = 0; file && i < *size; i++)
+        fputc('x', file);
+    if (file && fflush(file) == 0)
+        (void)!write(out, "written", 7);
+}
+
+// becomes another program
+static void become_echo(void *user, int out)
+{
+    (void)user;
+    dup2(out, STDOUT_FILENO);
+    execl("/bin/sh", "sh", "-c", "echo said; exit 7", (char *)NULL);
+}
+
+static void a_child_writes_only_files_it_may(void **state)
+{
+    (void)state;
+    char text[8] = {0}, end[80];
+    size_t little = 1000, much = 5000;
+    dem_guard_limits limits = plenty;
+    check(!run(write_file, &little, limits, text, 7, end));
+    limits.file = 2000;
+    check(run(write_file, &little, limits, text, 7, end));
+    check(!run(write_file, &much, limits, text, 7, end));
+}
+
+static void a_child_can_become_a_program_and_its_status_is_known(void **state)
+{
+    (void)state;
+    dem_guard guard;
+    dem_error error;
+    char text[64];
+    size_t size = 0, got;
+    check_ok(dem_guard_start(&guard, NULL, plenty, become_echo, NULL, &error), error);
+    while (size < sizeof text && (got = dem_guard_read_some(&guard, text + size, sizeof text - size)) > 0)
+        size += got;
+    check(size == 5 && memcmp(text, "said\n", 5) == 0);
+    dem_guard_end(&guard);
+    check(guard.status == 7);
+    check_ok(dem_guard_start(&guard, NULL, plenty, crash, NULL, &error), error);
+    dem_guard_end(&guard);
+    check(guard.status == -1);
+}
+
 static void a_child_that_dies_is_named_by_how(void **state)
 {
     (void)state;
@@ -250,6 +299,8 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(what_the_child_writes_is_read),
+        cmocka_unit_test(a_child_writes_only_files_it_may),
+        cmocka_unit_test(a_child_can_become_a_program_and_its_status_is_known),
         cmocka_unit_test(a_child_that_dies_is_named_by_how),
         cmocka_unit_test(a_child_that_hangs_is_stopped),
         cmocka_unit_test(a_child_that_wants_all_memory_gets_its_share),

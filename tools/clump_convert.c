@@ -16,7 +16,7 @@
 typedef struct arguments {
     cli_common common;
     cli_texts outputs, formats;
-    const char *from, *unit, *mass_unit, *mesh, *mesh_unit, *mass, *name;
+    const char *exports, *from, *unit, *mass_unit, *mesh, *mesh_unit, *mass, *name;
     double density, size;
     int mass_from, frame;
 } arguments;
@@ -290,7 +290,7 @@ static int check(const cli_tool *tool, const arguments *a, const cli_texts *inpu
     dem_error error;
     if (inputs->count == 0)
         return cli_wrong_usage(tool, "no clump given");
-    if (a->outputs.count == 0 && a->formats.count == 0)
+    if (a->outputs.count == 0 && a->formats.count == 0 && !a->exports)
         return cli_wrong_usage(tool, "say where to with -o FILE");
     if (inputs->count > 1 && (a->mesh || a->name))
         return cli_wrong_usage(tool, "--mesh and --name are for one file");
@@ -316,7 +316,7 @@ static int check(const cli_tool *tool, const arguments *a, const cli_texts *inpu
     return 0;
 }
 
-static int run(const cli_tool *tool, const arguments *a, const cli_texts *inputs)
+static int run(const cli_tool *tool, arguments *a, const cli_texts *inputs)
 {
     conversion c = {.arguments = a, .options = dem_import_defaults()};
     const char *table = NULL;
@@ -329,6 +329,9 @@ static int run(const cli_tool *tool, const arguments *a, const cli_texts *inputs
     c.options.mass_from = (dem_import_mass)a->mass_from;
     c.options.name = a->name;
     c.job = (job_options){.frame = (dem_frame)a->frame, .outputs = a->outputs, .formats = a->formats};
+    status = a->exports ? outputs_exports(tool, a->exports, &c.job, &a->formats) : 0;
+    if (status)
+        return status;
     cli_texts files = {.items = calloc(a->outputs.count + 1, sizeof *files.items)};
     c.results.items = calloc(inputs->count, sizeof *c.results.items);
     c.reports = calloc(inputs->count, sizeof *c.reports);
@@ -383,6 +386,9 @@ int clump_convert(int argc, char **argv)
         {"output", 'o', CLI_TEXTS, "FILE", "where to; the format follows the name; a folder for several; repeatable",
          &a.outputs, 0, 0},
         {"format", 0, CLI_TEXTS, "NAME", "format to write where the name does not tell", &a.formats, 0, 0},
+        {"exports", 0, CLI_TEXT, "LIST",
+         "these formats, as in pfc,liggghts, into the folder of -o; engines: those of other programs; all: every one",
+         &a.exports, 0, 0},
         {"frame", 0, CLI_CHOICE, frame_names,
          "frame of the formats that have only spheres (default principal; mesh: the source's own, in metres)", &a.frame,
          0, 0},

@@ -92,14 +92,13 @@ static char *output_path(const char *folder, const char *base, const char *suffi
 }
 
 // `out.json` of body 2 of several: `out-2.json`
-static char *numbered(const char *path, size_t body, size_t bodies)
+static char *numbered(const dem_exporter *exporter, const char *path, size_t body, size_t bodies)
 {
     if (bodies < 2 || strcmp(path, "-") == 0)
         return strdup(path);
-    const char *name = dem_file_name(path), *dot = strrchr(name, '.');
-    int stem = (int)(dot ? dot - path : (long)strlen(path));
+    size_t stem = dem_exporter_stem(exporter, path);
     char *numbered_path = NULL;
-    if (asprintf(&numbered_path, "%.*s-%zu%s", stem, path, body + 1, dot ? dot : "") < 0)
+    if (asprintf(&numbered_path, "%.*s-%zu%s", (int)stem, path, body + 1, path + stem) < 0)
         return NULL;
     return numbered_path;
 }
@@ -128,7 +127,12 @@ static dem_status write_outputs(job *j, job_result *r, const dem_mesh *mesh, siz
         size_t count = o->formats.count ? o->formats.count : 1;
         for (size_t i = 0; i < count; i++) {
             const dem_exporter *exporter = dem_exporter_find(o->formats.count ? o->formats.items[i] : "json");
-            DEM_TRY(write_one(j, r, mesh, exporter, output_path(o->folder, r->name, exporter->suffix), error));
+            dem_status status =
+                write_one(j, r, mesh, exporter, output_path(o->folder, r->name, exporter->suffix), error);
+            if (status == DEM_UNAVAILABLE && o->every_format)
+                dem_log(&j->ctx, DEM_LOG_WARNING, "no %s: %s", exporter->name, error->text);
+            else if (status != DEM_OK)
+                return status;
         }
         return DEM_OK;
     }
@@ -137,7 +141,7 @@ static dem_status write_outputs(job *j, job_result *r, const dem_mesh *mesh, siz
         const dem_exporter *exporter = dem_exporter_of_file(path);
         if (i < o->formats.count)
             exporter = dem_exporter_find(o->formats.items[i]);
-        DEM_TRY(write_one(j, r, mesh, exporter, numbered(path, body, bodies), error));
+        DEM_TRY(write_one(j, r, mesh, exporter, numbered(exporter, path, body, bodies), error));
     }
     return DEM_OK;
 }

@@ -18,6 +18,8 @@ typedef struct job_options {
     dem_frame frame;               ///< of the formats that can be in either
     cli_texts outputs;             ///< files; empty: NAME.json in the current folder
     cli_texts formats;             ///< for outputs whose name does not tell, and for a folder
+    bool into_folder;              ///< --exports: -o names a folder, also one that is not there yet
+    bool every_format;             ///< `formats` are all there are: leave out what this build cannot write
     const char *folder;            ///< where the files of several grains go; NULL: single
 } job_options;
 

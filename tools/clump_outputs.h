@@ -1,4 +1,4 @@
-/// Where the clumps of a command go that has them already: what -o means, names of files, the exit status.
+/// Where clumps go: what -o and --exports mean, names of files, the exit status.
 #ifndef DEM_TOOLS_CLUMP_OUTPUTS_H
 #define DEM_TOOLS_CLUMP_OUTPUTS_H
 
@@ -7,6 +7,10 @@
 /// Sorts `o->outputs` and `o->formats`: files of one clump (into `files`, room for all), or a folder (`o->folder`), and
 /// a CSV table. Says what does not go together; 0 or the exit status.
 int outputs_sort(const cli_tool *tool, job_options *o, bool several, cli_texts *files, const char **table);
+
+/// --exports LIST: names between commas, `engines` or `all`, become `formats` and those of the job, whose -o is then a
+/// folder. Before outputs_sort; 0 or the exit status.
+int outputs_exports(const cli_tool *tool, const char *list, job_options *o, cli_texts *formats);
 
 /// Base name of the outputs of an input: its own without folder and suffix, numbered where others before it have the
 /// same.

@@ -3,7 +3,6 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <sys/stat.h>
 
 #include "base/file.h"
 #include "base/memory.h"
@@ -12,7 +11,9 @@
 #include "clump/pack.h"
 #include "clump_convert.h"
 #include "clump_job.h"
+#include "clump_outputs.h"
 #include "clump_report.h"
+#include "clump_verify.h"
 #include "out/export.h"
 
 // what the option table fills
@@ -22,7 +23,7 @@ typedef struct arguments {
     double gap, size, density, wrap_detail;
     int effort, moments, mass_from, frame, repair, keep;
     bool inscribed, outer, split, methods;
-    const char *method, *unit;
+    const char *method, *unit, *exports;
     cli_texts outputs, formats;
 } arguments;
 
@@ -37,6 +38,8 @@ static const char epilogue[] = "Examples:\n"
                                "  dem-clump grain.obj -e 3                     as many spheres as a 3 % gap needs\n"
                                "  dem-clump grain.obj -o - --format xyzr       spheres on standard output\n"
                                "  dem-clump scans/*.stl -o clumps/             a batch; the table on standard output\n"
+                               "  dem-clump grain.obj --exports all -o out     for every program it knows\n"
+                               "  dem-clump verify grain.json                  what mass these programs really use\n"
                                "  dem-clump convert rock.mol -o rock.json      a clump of another program\n"
                                "Exit status: 0 done, 1 failed, 2 wrong usage, 3 bad input, 4 cannot write, 130 interrupted.";
 
@@ -95,53 +98,6 @@ static job_options job_options_from(const arguments *a)
     if (a->split)
         o.repair.keep = DEM_KEEP_ALL;
     return o;
-}
-
-static bool is_folder(const char *path)
-{
-    struct stat about_path;
-    size_t length = strlen(path);
-    return (length && path[length - 1] == '/') || (stat(path, &about_path) == 0 && S_ISDIR(about_path.st_mode));
-}
-
-static const char *format_names(char text[256])
-{
-    *text = 0;
-    for (const dem_exporter *const *e = dem_exporters(); *e; e++)
-        snprintf(text + strlen(text), 256 - strlen(text), " %s", (*e)->name);
-    return text;
-}
-
-// -o: files of one grain, or a folder (and a table) of several; says what does not go together
-// (`files`, room for all of them)
-static int sort_outputs(const cli_tool *tool, job_options *o, bool several, cli_texts *files, const char **table)
-{
-    char known[256];
-    for (size_t i = 0; i < o->formats.count; i++)
-        if (!dem_exporter_find(o->formats.items[i]))
-            return cli_wrong_usage(tool, "unknown format '%s'; use one of:%s", o->formats.items[i],
-                                   format_names(known));
-    for (size_t i = 0; i < o->outputs.count; i++) {
-        const char *path = o->outputs.items[i];
-        if (strcmp(path, "-") != 0 && is_folder(path))
-            o->folder = path;
-        else if (dem_file_has_suffix(path, "csv"))
-            *table = path;
-        else if (several)
-            return cli_wrong_usage(tool, "several grains cannot all go to '%s'; name a folder with -o DIR/", path);
-        else {
-            if (files->count >= o->formats.count && !dem_exporter_of_file(path))
-                return cli_wrong_usage(tool, "the name '%s' does not tell the format; add --format, one of:%s", path,
-                                       format_names(known));
-            files->items[files->count++] = path;
-        }
-    }
-    if (o->folder && files->count)
-        return cli_wrong_usage(tool, "give -o either a folder or files, not both");
-    if (o->folder && mkdir(o->folder, 0777) != 0 && !is_folder(o->folder))
-        return cli_error(tool, &(dem_error){.code = DEM_CANNOT_WRITE, .text = "cannot make the folder for -o"});
-    o->outputs = *files;
-    return 0;
 }
 
 // output names of a batch: the input's name without folder and suffix, numbered where two are the same
@@ -222,22 +178,7 @@ static int write_report(const cli_tool *tool, const arguments *a, const job_opti
     return text.size ? cli_print(tool, &text) : 0;
 }
 
-static int exit_status(const job_results *results, bool several)
-{
-    int status = 0;
-    for (size_t i = 0; i < results->count; i++) {
-        int code = (int)results->items[i].status;
-        if (code == DEM_NO_MEMORY)
-            code = DEM_FAILED;
-        if (code == DEM_UNAVAILABLE || (code != 0 && several))
-            code = DEM_BAD_INPUT;
-        if (code != 0)
-            status = code;
-    }
-    return cli_interrupted() ? DEM_INTERRUPTED : status;
-}
-
-static int run(const cli_tool *tool, const arguments *a, const cli_texts *inputs)
+static int run(const cli_tool *tool, arguments *a, const cli_texts *inputs)
 {
     job_options options = job_options_from(a);
     dem_error error;
@@ -247,10 +188,13 @@ static int run(const cli_tool *tool, const arguments *a, const cli_texts *inputs
         return cli_wrong_usage(tool, "--unit: %s", error.text);
     if (a->inscribed && a->outer)
         return cli_wrong_usage(tool, "--inscribed and --outer exclude each other");
+    int status = a->exports ? outputs_exports(tool, a->exports, &options, &a->formats) : 0;
+    if (status != 0)
+        return status;
     cli_texts files = {.items = calloc(a->outputs.count + 1, sizeof *files.items)};
     char **names = grain_names(inputs);
-    int status = files.items && names ? sort_outputs(tool, &options, several, &files, &table)
-                                      : cli_error(tool, &(dem_error){.code = DEM_NO_MEMORY, .text = "out of memory"});
+    status = files.items && names ? outputs_sort(tool, &options, several, &files, &table)
+                                  : cli_error(tool, &(dem_error){.code = DEM_NO_MEMORY, .text = "out of memory"});
     if (status == 0) {
         cli_session session;
         job_results results = {0};
@@ -259,7 +203,7 @@ static int run(const cli_tool *tool, const arguments *a, const cli_texts *inputs
         cli_end(&session);
         status = write_report(tool, a, &options, &results, several || a->split, table);
         if (status == 0)
-            status = exit_status(&results, several);
+            status = outputs_status(&results, several);
         job_results_release(&results);
     }
     for (size_t i = 0; names && i < inputs->count; i++)
@@ -274,7 +218,7 @@ typedef struct subcommand {
     const char *name;
     int (*run)(int argc, char **argv);
 } subcommand;
-static const subcommand subcommands[] = {{"convert", clump_convert}};
+static const subcommand subcommands[] = {{"convert", clump_convert}, {"verify", clump_verify}};
 
 int main(int argc, char **argv)
 {
@@ -312,8 +256,11 @@ int main(int argc, char **argv)
         {.help = "Output"},
         {"output", 'o', CLI_TEXTS, "FILE", "where to; the format follows the name; repeatable (default NAME.json)",
          &a.outputs, 0, 0},
-        {"format", 0, CLI_TEXTS, "NAME", "format where the name does not tell: json, xyzr, vtp, stl, png", &a.formats, 0,
-         0},
+        {"format", 0, CLI_TEXTS, "NAME", "format where the name does not tell: json, xyzr, vtp, stl, png, lammps, ...",
+         &a.formats, 0, 0},
+        {"exports", 0, CLI_TEXT, "LIST",
+         "these formats, as in pfc,liggghts, into the folder of -o; engines: those of other programs; all: every one",
+         &a.exports, 0, 0},
         {"frame", 0, CLI_CHOICE, frame_names,
          "frame of xyzr, vtp, stl (default principal; mesh: the file's own, in metres)", &a.frame, 0, 0},
         CLI_COMMON_OPTIONS(a.common),

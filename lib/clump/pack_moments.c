@@ -6,6 +6,7 @@
 #include "base/status.h"
 #include "clump/pack_metric.h"
 #include "geom/union.h"
+#include "math/solve.h"
 
 enum { MOST_STEPS = 40 };
 
@@ -88,32 +89,6 @@ dem_status dem_moment_rows_set(dem_packing *p, const dem_pack_state *state, size
     return DEM_OK;
 }
 
-// solves the symmetric system a x = b by elimination; false: there is a pivot below `least`
-static bool solve(double a[DEM_MOMENT_COUNT][DEM_MOMENT_COUNT + 1], size_t n, double least)
-{
-    for (size_t q = 0; q < n; q++) {
-        size_t pivot = q;
-        for (size_t i = q + 1; i < n; i++)
-            if (fabs(a[i][q]) > fabs(a[pivot][q]))
-                pivot = i;
-        if (!(fabs(a[pivot][q]) > least))
-            return false;
-        for (size_t k = 0; k <= n; k++) {
-            double swap = a[q][k];
-            a[q][k] = a[pivot][k];
-            a[pivot][k] = swap;
-        }
-        for (size_t i = 0; i < n; i++) {
-            double factor = i == q ? 0 : a[i][q] / a[q][q];
-            for (size_t k = q; k <= n && i != q; k++)
-                a[i][k] -= factor * a[q][k];
-        }
-    }
-    for (size_t q = 0; q < n; q++)
-        a[q][n] /= a[q][q];
-    return true;
-}
-
 // Multipliers of the moments' gradients in the move of least cost that makes up for the lack to first order; with
 // damping less of what is hard to make up for.
 static bool set_multipliers(const dem_packing *p, const dem_pack_state *state, const dem_moment_rows *rows,
@@ -138,7 +113,7 @@ static bool set_multipliers(const dem_packing *p, const dem_pack_state *state, c
     }
     for (size_t k = 0; k < n; k++)
         a[k][k] += damping * largest;
-    if (!solve(a, n, singular * largest))
+    if (!dem_solve(&a[0][0], DEM_MOMENT_COUNT + 1, n, singular * largest))
         return false;
     for (size_t k = 0; k < n; k++)
         multiplier[k] = a[k][n] / rows->scale[k];

@@ -58,7 +58,7 @@ static void close_all_but(int kept)
 static void set_limits(const dem_guard_limits *limits, double memory)
 {
     limit(RLIMIT_CORE, 0, 0);
-    limit(RLIMIT_FSIZE, 0, 0);                                    // pipes are not counted
+    limit(RLIMIT_FSIZE, limits->file, limits->file);              // pipes are not counted
     limit(RLIMIT_CPU, ceil(limits->cpu), ceil(limits->cpu) + 1);  // SIGXCPU at the first, SIGKILL at the second
     if (DEM_GUARD_MEMORY && memory > 0)
         limit(RLIMIT_AS, memory + limits->memory, memory + limits->memory);
@@ -89,7 +89,7 @@ _Noreturn static void be_child(int out, const dem_guard_limits *limits, double m
 dem_status dem_guard_start(dem_guard *guard, const dem_ctx *ctx, dem_guard_limits limits,
                            void (*work)(void *user, int out), void *user, dem_error *error)
 {
-    *guard = (dem_guard){.ctx = ctx, .limits = limits, .begin = now()};
+    *guard = (dem_guard){.ctx = ctx, .limits = limits, .begin = now(), .doing = "importing", .status = -1};
     int ends[2];
     if (pipe2(ends, O_CLOEXEC) != 0)
         return dem_fail(error, DEM_FAILED, "no pipe to a child process: %s; close other programs", strerror(errno));
@@ -108,28 +108,36 @@ dem_status dem_guard_start(dem_guard *guard, const dem_ctx *ctx, dem_guard_limit
     return DEM_OK;
 }
 
-bool dem_guard_read(dem_guard *guard, void *bytes, size_t size)
+size_t dem_guard_read_some(dem_guard *guard, void *bytes, size_t size)
 {
-    for (char *to = bytes; size;) {
+    for (;;) {
         if (now() - guard->begin > guard->limits.wall) {
             guard->late = true;
-            return false;
+            return 0;
         }
-        if (dem_progress(guard->ctx, "importing", 0)) {
+        if (dem_progress(guard->ctx, guard->doing, 0)) {
             guard->interrupted = true;
-            return false;
+            return 0;
         }
         struct pollfd one = {.fd = guard->pipe, .events = POLLIN};
         int ready = poll(&one, 1, POLL_MS);
         if (ready == 0 || (ready < 0 && errno == EINTR))
             continue;
-        ssize_t got = read(guard->pipe, to, size);
+        ssize_t got = read(guard->pipe, bytes, size);
         if (got < 0 && errno == EINTR)
             continue;
-        if (got <= 0)
+        return got > 0 ? (size_t)got : 0;
+    }
+}
+
+bool dem_guard_read(dem_guard *guard, void *bytes, size_t size)
+{
+    for (char *to = bytes; size;) {
+        size_t got = dem_guard_read_some(guard, to, size);
+        if (got == 0)
             return false;
         to += got;
-        size -= (size_t)got;
+        size -= got;
     }
     return true;
 }
@@ -159,6 +167,7 @@ const char *dem_guard_end(dem_guard *guard)
     close(guard->pipe);  // a child that still writes ends by SIGPIPE
     int status = reap(guard);
     int number = WIFSIGNALED(status) ? WTERMSIG(status) : 0;
+    guard->status = WIFEXITED(status) ? WEXITSTATUS(status) : -1;
     guard->interrupted |= number == SIGINT || number == SIGTERM;
     if (guard->interrupted)
         snprintf(guard->why, sizeof guard->why, "was interrupted");

@@ -22,6 +22,7 @@ typedef struct dem_guard_limits {
     double memory;  ///< beyond what the caller has at the start [byte]
     double cpu;     ///< [s]
     double wall;    ///< [s]
+    double file;    ///< largest file it may write [byte]; 0: it writes none (what goes to `out` is not counted)
 } dem_guard_limits;
 
 typedef struct dem_guard {
@@ -30,19 +31,24 @@ typedef struct dem_guard {
     pid_t child;
     int pipe;
     double begin;  ///< on the monotonic clock [s]
+    const char *doing;  ///< what the progress callback is told ["importing"]
     bool late, interrupted;
+    int status;  ///< with which it left, set by dem_guard_end; -1: it did not leave by itself
     char why[80];
 } dem_guard;
 
 /// Starts `work` in a child process of its own: what it writes to `out` is read with dem_guard_read. It sees no
-/// terminal, writes no files, dies with the caller, and ends by _exit when `work` returns. DEM_FAILED where the
-/// system gives no process or pipe.
+/// terminal, dies with the caller, and ends by _exit when `work` returns (which may also become another program by
+/// execv). DEM_FAILED where the system gives no process or pipe.
 dem_status dem_guard_start(dem_guard *guard, const dem_ctx *ctx, dem_guard_limits limits,
                            void (*work)(void *user, int out), void *user, dem_error *error);
 
 /// The next `size` bytes the child writes. False where they do not come: it ended, took too long, or the caller's
 /// progress callback asked to stop.
 bool dem_guard_read(dem_guard *guard, void *bytes, size_t size);
+
+/// At least one and at most `size` bytes, as soon as there are some; 0 where dem_guard_read would be false.
+size_t dem_guard_read_some(dem_guard *guard, void *bytes, size_t size);
 
 /// Ends the child whatever it does and leaves nothing of it. Returns how it ended, for a message ("crashed
 /// (signal 11)"); valid as long as `guard`.

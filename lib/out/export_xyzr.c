@@ -1,14 +1,4 @@
-#include "out/export.h"
-
-static void put_comment(dem_buffer *out, const char *what, const double *values, int count)
-{
-    dem_buffer_print(out, "# %s", what);
-    for (int i = 0; i < count; i++) {
-        dem_buffer_text(out, " ");
-        dem_buffer_number(out, values[i], 17);
-    }
-    dem_buffer_text(out, "\n");
-}
+#include "out/export_text.h"
 
 // comments are one line each, whatever the name
 static void put_title(dem_buffer *out, const dem_clump_def *clump)
@@ -22,19 +12,13 @@ static void put_title(dem_buffer *out, const dem_clump_def *clump)
 static void put_head(dem_buffer *out, const dem_clump_def *clump, const dem_export_options *options)
 {
     bool mesh_frame = options->frame == DEM_FRAME_MESH;
-    dem_vec3 centre = export_ball(options, clump, (dem_ball){{0, 0, 0}, 0}).centre, p = clump->position;
-    dem_quat q = clump->orientation;
+    dem_vec3 centre = export_ball(options, clump, (dem_ball){{0, 0, 0}, 0}).centre;
     put_title(out, clump);
     dem_buffer_print(out, "# frame: %s\n",
                      mesh_frame ? "mesh, that of the file it was made from, in metres"
                                 : "principal, centre of mass at 0, axes I1 <= I2 <= I3");
     dem_buffer_text(out, "# unit of x y z r: m\n");
-    put_comment(out, "density [kg/m^3]:", &clump->density, 1);
-    put_comment(out, "mass [kg]:", &clump->mass, 1);
-    put_comment(out, "centre of mass [m]:", (double[]){centre.x, centre.y, centre.z}, 3);
-    put_comment(out, "principal moments of inertia [kg m^2]:", clump->inertia, 3);
-    put_comment(out, "principal to mesh frame, position [m]:", (double[]){p.x, p.y, p.z}, 3);
-    put_comment(out, "principal to mesh frame, quaternion w x y z:", (double[]){q.w, q.x, q.y, q.z}, 4);
+    dem_export_put_mass(out, "# ", clump, centre);
     dem_buffer_text(out, "# x y z r\n");
 }
 
@@ -43,14 +27,8 @@ static dem_status write_xyzr(const dem_clump *clump, const dem_export_options *o
 {
     dem_clump_def def = dem_clump_view(clump);
     put_head(out, &def, options);
-    for (size_t i = 0; i < def.ball_count; i++) {
-        dem_ball b = export_ball(options, &def, def.balls[i]);
-        const double values[4] = {b.centre.x, b.centre.y, b.centre.z, b.radius};
-        for (int k = 0; k < 4; k++) {
-            dem_buffer_number(out, values[k], 17);
-            dem_buffer_text(out, k < 3 ? " " : "\n");
-        }
-    }
+    for (size_t i = 0; i < def.ball_count; i++)
+        dem_export_put_ball(out, export_ball(options, &def, def.balls[i]), " ");
     return out->failed ? dem_fail_memory(error) : DEM_OK;
 }
 
