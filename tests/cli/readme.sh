@@ -31,6 +31,16 @@ if [ -s readme.py ] && command -v python3 >/dev/null; then
     done
 fi
 
+# ---- its scene
+blocks js >column.json
+[ -s column.json ] || fail "no scene in the README"
+if [ "${DEM_EMBREE:-1}" = 1 ]; then
+    cp "$source/shapes/clumps/sand.json" .
+    printf '%s\n' 'solid hopper' 'facet normal 0 0 1' 'outer loop' 'vertex 0 0 -1' 'vertex 1 0 -1' 'vertex 0 1 -1' \
+        endloop endfacet endsolid >hopper.stl
+    "$tools/dem-run" column.json --check >said 2>&1 || fail "the README's scene is refused: $(cat said)"
+fi
+
 # ---- the options of its commands, in blocks and in lines; a comment may stand behind
 { grep -E '^    (\./build/)?dem-[a-z]+ ' "$readme"; grep -oE '`dem-[a-z]+ [^`]*`' "$readme" | tr -d '`'; } |
     sed 's/  *#.*//; s/[|&].*//; s/^ *//' >commands
