@@ -2,7 +2,8 @@
 
 enum { FIRST = 32, LAST = 126 };
 
-// seven rows of five bits from the top, the left pixel the highest; a frame where there is no sign
+// seven rows of five bits from the top, the left pixel the highest; a frame where there is no sign. Letters that reach
+// below the line are drawn a row lower
 static const uint8_t signs[LAST - FIRST + 1][7] = {
     // clang-format off
     { 0,  0,  0,  0,  0,  0,  0},  //  
@@ -102,14 +103,16 @@ static const uint8_t signs[LAST - FIRST + 1][7] = {
     {31, 17, 17, 17, 17, 17, 31},  // ~
     // clang-format on
 };
+static const char low_signs[] = "gpqy_,";
 
 void dem_font_draw(dem_image *image, int x, int y, const char *text, const uint8_t colour[3])
 {
     for (; *text; text++, x += DEM_FONT_WIDTH) {
         int sign = (unsigned char)*text < FIRST || (unsigned char)*text > LAST ? '#' : *text;
+        int drop = strchr(low_signs, sign) ? 1 : 0;
         for (int row = 0; row < 7; row++)
             for (int column = 0; column < 5; column++) {
-                int at_x = x + column, at_y = y + row;
+                int at_x = x + column, at_y = y + row + drop;
                 bool set = signs[sign - FIRST][row] >> (4 - column) & 1;
                 if (set && at_x >= 0 && at_y >= 0 && at_x < image->width && at_y < image->height)
                     memcpy(image->pixels + 3 * ((size_t)at_y * (size_t)image->width + (size_t)at_x), colour, 3);
