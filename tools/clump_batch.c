@@ -64,7 +64,7 @@ static void show_on_sheet(batch *b, job_result *r)
     if (r->clump) {
         dem_clump_def c = dem_clump_view(r->clump);
         char gap[32];
-        snprintf(note, sizeof note, "%zu spheres  %s %%", c.ball_count,
+        snprintf(note, sizeof note, "%zu spheres, gap %s %%", c.ball_count,
                  dem_format_double(gap, sizeof gap, 100 * c.fidelity.iou_gap, 3));
     }
     told(b, dem_sheet_add(b->sheet, &r->picture, r->name, note, &error), &error);
