@@ -10,6 +10,7 @@
 #include "base/memory.h"
 #include "clump_labels.h"
 #include "clump_report.h"
+#include "clump_scene.h"
 #include "clump_table.h"
 #include "out/sheet.h"
 
@@ -23,6 +24,7 @@ typedef struct batch {
     cli_session session;
     clump_table table;
     dem_sheet *sheet;
+    clump_scene scene;  // of the volume at hand
     job_results *results;
     size_t made, kept, failed, undone;
     dem_buffer failures;
@@ -89,6 +91,8 @@ static void take_results(batch *b, task *t)
         told(b, clump_table_add(&b->table, r, &error), &error);
         if (b->sheet)
             show_on_sheet(b, r);
+        if (t->volume && b->options->folder && r->status == DEM_OK)
+            clump_scene_add(&b->scene, r);
     }
     if (b->asked->keep_results) {
         if (b->several)
@@ -165,6 +169,8 @@ static void run_volume(batch *b, const clump_input *input)
     if (tasks)
         run_tasks(b, tasks, labels.count);
     free(tasks);
+    if (b->options->folder)
+        told(b, clump_scene_finish(&b->scene, b->options->folder, input->name, &error), &error);
     labels_release(&labels);
     dem_volume_free(&volume);
 }

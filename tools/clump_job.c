@@ -99,7 +99,9 @@ static dem_status read_and_repair(job *j, dem_mesh *mesh, dem_error *error)
 static char *output_path(const char *folder, const char *base, const char *suffix)
 {
     char *path = NULL;
-    if (asprintf(&path, "%s%s%s.%s", folder ? folder : "", folder && *folder ? "/" : "", base, suffix) < 0)
+    size_t length = folder ? strlen(folder) : 0;
+    const char *slash = length && folder[length - 1] != '/' ? "/" : "";
+    if (asprintf(&path, "%s%s%s.%s", folder ? folder : "", slash, base, suffix) < 0)
         return NULL;
     return path;
 }

@@ -238,7 +238,7 @@ void report_json(dem_buffer *out, const job_results *results, bool several)
 // ---- CSV
 
 // quoted where needed (RFC 4180)
-static void csv_text(dem_buffer *out, const char *text)
+void report_csv_text(dem_buffer *out, const char *text)
 {
     if (!strpbrk(text, ",\"\n\r")) {
         dem_buffer_text(out, text);
@@ -308,9 +308,9 @@ void report_csv_header(dem_buffer *out, bool labels)
 
 void report_csv_start(dem_buffer *out, const job_result *r, const char *status)
 {
-    csv_text(out, r->input);
+    report_csv_text(out, r->input);
     dem_buffer_text(out, ",");
-    csv_text(out, r->name);
+    report_csv_text(out, r->name);
     dem_buffer_print(out, ",%s,", status);
 }
 
@@ -325,6 +325,6 @@ void report_csv_row(dem_buffer *out, const job_result *r, bool labels)
         dem_buffer_text(out, ",");
     }
     dem_buffer_print(out, "%s,%zu,", r->clump && !r->kept ? moments_text[r->pack.moments] : "", r->warning_count);
-    csv_text(out, r->status == DEM_OK ? "" : r->error.text);
+    report_csv_text(out, r->status == DEM_OK ? "" : r->error.text);
     dem_buffer_text(out, "\n");
 }

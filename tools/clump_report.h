@@ -14,6 +14,8 @@ void report_json(dem_buffer *out, const job_results *results, bool several);
 /// A header line, and a row per grain; SI units stand in the header. `labels`: with what label volumes tell.
 void report_csv_header(dem_buffer *out, bool labels);
 void report_csv_row(dem_buffer *out, const job_result *result, bool labels);
+/// A text of a table, in quotes where it needs them (RFC 4180).
+void report_csv_text(dem_buffer *out, const char *text);
 /// What the row of a grain starts with: its input, its name and a status.
 void report_csv_start(dem_buffer *out, const job_result *result, const char *status);
 

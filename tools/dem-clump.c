@@ -148,8 +148,9 @@ static int sort_outputs(const cli_tool *tool, job_options *o, bool several, cli_
     }
     if (o->folder && files->count)
         return cli_wrong_usage(tool, "give -o either a folder or files, not both");
-    if (o->folder && mkdir(o->folder, 0777) != 0 && !is_folder(o->folder))
-        return cli_error(tool, &(dem_error){.code = DEM_CANNOT_WRITE, .text = "cannot make the folder for -o"});
+    struct stat made;
+    if (o->folder && mkdir(o->folder, 0777) != 0 && (stat(o->folder, &made) != 0 || !S_ISDIR(made.st_mode)))
+        return cli_error(tool, &(dem_error){.code = DEM_CANNOT_WRITE, .text = "cannot make the folder for -o; name another"});
     o->outputs = *files;
     return 0;
 }

@@ -22,7 +22,7 @@ done
 
 # batch FOLDER CORES: sets `made`, `seconds`, `user`, `peak`
 batch() {
-    /usr/bin/time -f '%e %U %M' -o "$work/time" "$tool" "$1" -j "$2" -n "$spheres" -q -o "$work/out" -o "$work/t.csv" \
+    /usr/bin/time -f '%e %U %M' -o "$work/time" "$tool" "$1" -j "$2" -n "$spheres" -q -o "$work/out/" -o "$work/t.csv" \
         -o "$work/sheet.png" 2>"$work/err" || cat "$work/err"
     read -r seconds user peak <"$work/time"
     made=$(grep -c ',done,' "$work/t.csv")

@@ -23,7 +23,7 @@ column() { awk -F, -v name="$1" -v grain="$2" 'NR == 1 { for (i = 1; i <= NF; i+
 near() { awk -v a="$1" -v b="$2" -v t="$3" 'BEGIN { exit !(a - b <= t && b - a <= t) }' || fail "$ran: $1, not $2 within $3"; }
 
 run 0 dem-clump scan.nrrd $fast -o clumps/ -o t.csv
-ls clumps | tr '\n' ' ' | grep -qx 'scan_12.json scan_3.json ' || fail "clumps: $(ls clumps)"
+ls clumps | tr '\n' ' ' | grep -qx 'scan_12.json scan_3.json scan_bodies.csv scan_scene.json ' || fail "clumps: $(ls clumps)"
 mentions 'warning: scan.nrrd: left out 2 labels of fewer than 500 voxels'
 mentions '^dem-clump: 2 made$'
 # in metres, the surface with the volume of the voxels, the centre where it lies in the image
@@ -33,10 +33,16 @@ near "$(column centre_x_m 3)" 50e-6 1e-6
 near "$(column centre_x_m 12)" 125e-6 3e-6
 near "$(column centre_z_m 12)" 50e-6 1e-6
 grep -q '"position"' clumps/scan_3.json || fail "the clump does not tell where it lies"
+# and as a scene
+[ "$(wc -l <clumps/scan_bodies.csv)" = 3 ] || fail "bodies: $(cat clumps/scan_bodies.csv)"
+if [ -x "$tools/dem-run" ]; then
+    run 0 dem-run --check clumps/scan_scene.json
+    prints '2 bodies of 8 spheres'
+fi
 
 # what is asked for
 run 0 dem-clump scan.nrrd $fast -o some/ -q --labels 1-4,99
-[ "$(ls some)" = scan_3.json ] || fail "--labels: $(ls some)"
+[ "$(ls some/*[0-9].json)" = some/scan_3.json ] || fail "--labels: $(ls some)"
 run 0 dem-clump scan.nrrd $fast -o border/ -o t.csv --min-voxels 20 --labels 40
 mentions 'cut flat by the border'
 [ "$(column status 40)" = done ] || fail "a grain at the border"
@@ -63,18 +69,16 @@ run 2 dem-clump plain.nrrd --spacing -5um
 voxels | tr ' ' '\n' | awk '{ printf "\\%03o", $1 }' >octal
 printf "$(cat octal)" >scan.raw
 [ "$(wc -c <scan.raw)" = $((40 * 22 * 20)) ] || fail "the test's own raw file"
-run 0 dem-clump scan.raw --raw '40x22x20 uint8' --spacing 5um $fast -q -o raw/ --format xyzr
+run 0 dem-clump scan.raw --raw '40x22x20 uint8' --spacing 5um $fast -q -o raw/ --format xyzr --labels 12
 { printf 'NRRD0004\ntype: uint8\ndimension: 3\nsizes: 40 22 20\nencoding: gzip\nspacings: 5 5 5\ndata file: scan.raw.gz\n'; } >packed.nhdr
 run 3 dem-clump packed.nhdr $fast -q -o raw/
 mentions 'error: packed.nhdr: .*scan.raw.gz.*cannot be read'
 gzip -k scan.raw
-run 0 dem-clump packed.nhdr --spacing 5um $fast -q -o raw/ --format xyzr
+run 0 dem-clump packed.nhdr --spacing 5um $fast -q -o raw/ --format xyzr --labels 12
 printf 'NDims = 3\nDimSize = 40 22 20\nElementSpacing = 5 5 5\nElementType = MET_UCHAR\nElementDataFile = scan.raw\n' >meta.mhd
-run 0 dem-clump meta.mhd --spacing 5um $fast -q -o raw/ --format xyzr
-for label in 3 12; do
-    for other in packed meta; do
-        diff <(grep -v '^#' raw/scan_$label.xyzr) <(grep -v '^#' raw/${other}_$label.xyzr) >d || fail "$other differs: $(head -c 300 d)"
-    done
+run 0 dem-clump meta.mhd --spacing 5um $fast -q -o raw/ --format xyzr --labels 12
+for other in packed meta; do
+    diff <(grep -v '^#' raw/scan_12.xyzr) <(grep -v '^#' raw/${other}_12.xyzr) >d || fail "$other differs: $(head -c 300 d)"
 done
 run 3 dem-clump scan.raw --raw '40x22x21 uint8' -o raw/
 mentions 'scan.raw: 40 x 22 x 21 voxels of uint8 are 18480 bytes, but the file holds 17600'
@@ -88,7 +92,7 @@ run 3 dem-clump apart.nrrd --unit um $fast -o c/ --labels 3
 mentions 'label 3: .*in 2 pieces.*--keep'
 run 0 dem-clump apart.nrrd --unit um $fast -q -o c/ --labels 3 --keep largest
 run 0 dem-clump apart.nrrd --unit um $fast -q -o split/ --labels 3 --split
-[ "$(ls split | wc -l)" = 2 ] || fail "--split of a label: $(ls split)"
+[ "$(ls split/*3-[12].json | wc -l)" = 2 ] || fail "--split of a label: $(ls split)"
 
 # refused with one line, and the others of the batch go on
 { header 'spacings: 1 0 1\n'; voxels; } >spacing.nrrd
@@ -99,7 +103,7 @@ for file in spacing cut empty unended; do
     run 3 dem-clump $file.nrrd $fast -o c/
     [ "$(grep -c 'error:' err)" = 1 ] || fail "$file: $(cat err)"
 done
-run 3 dem-clump spacing.nrrd scan.nrrd empty.nrrd "$source/shapes/grains/sand.obj" $fast -o mixed/ -o t.csv
-ls mixed | tr '\n' ' ' | grep -qx 'sand.json scan_12.json scan_3.json ' || fail "mixed: $(ls mixed)"
-mentions '3 made, 2 failed: spacing.nrrd: .*; empty.nrrd: '
+run 3 dem-clump spacing.nrrd scan.nrrd empty.nrrd "$source/shapes/grains/sand.obj" $fast -o mixed/ -o t.csv --labels 3
+ls mixed | tr '\n' ' ' | grep -qx 'sand.json scan_3.json scan_bodies.csv scan_scene.json ' || fail "mixed: $(ls mixed)"
+mentions '2 made, 2 failed: spacing.nrrd: .*; empty.nrrd: '
 finish
