@@ -64,7 +64,8 @@ static void check_manifold(const dem_mesh *mesh)
     assert_int_equal(edges.border, 0);
     assert_int_equal(edges.many, 0);
     assert_int_equal(edges.duplicates, 0);
-    uint32_t *half = dem_alloc(mesh->vertex_count, sizeof *half), *about = dem_alloc_zero(mesh->vertex_count, sizeof *about);
+    uint32_t *half = dem_alloc(mesh->vertex_count, sizeof *half),
+             *about = dem_alloc_zero(mesh->vertex_count, sizeof *about);
     for (uint32_t h = 0; h < 3 * mesh->triangle_count; h++) {
         check(half_start(mesh, h) == half_end(mesh, edges.twin[h]));
         half[half_start(mesh, h)] = h;
@@ -118,11 +119,13 @@ static void voxels_of_ellipsoids_give_ellipsoids(void **state)
 {
     (void)state;
     // the last ones are flat and long
-    static const double shapes[][6] = {{5, 5, 5, 5, 5, 5},       {5.3, 5.4, 5.7, 5.2, 5.2, 5.2}, {10.2, 10.4, 10, 10, 10, 10},
-                                       {30, 30, 30, 30, 30, 30}, {30.3, 15, 12, 30, 15, 9},      {22, 12, 8, 21, 10, 7}};
+    static const double shapes[][6] = {{5, 5, 5, 5, 5, 5},           {5.3, 5.4, 5.7, 5.2, 5.2, 5.2},
+                                       {10.2, 10.4, 10, 10, 10, 10}, {30, 30, 30, 30, 30, 30},
+                                       {30.3, 15, 12, 30, 15, 9},    {22, 12, 8, 21, 10, 7}};
     for (size_t i = 0; i < sizeof shapes / sizeof *shapes; i++) {
         const double *e = shapes[i];
-        dem_volume v = image_of((size_t)(2 * e[0]) + 2, (size_t)(2 * e[1]) + 2, (size_t)(2 * e[2]) + 2, in_ellipsoid, e);
+        dem_volume v =
+            image_of((size_t)(2 * e[0]) + 2, (size_t)(2 * e[1]) + 2, (size_t)(2 * e[2]) + 2, in_ellipsoid, e);
         dem_label label = only_label(&v);
         dem_mesh mesh = surface_of(&v, label, DEM_KEEP_ONE);
         dem_solid solid = dem_mesh_solid(&mesh);

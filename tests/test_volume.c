@@ -72,7 +72,9 @@ static void put_voxels(dem_buffer *out, dem_voxel_type type, bool big)
 static void put_gzip(dem_buffer *out, const dem_buffer *plain, int window_bits)
 {
     unsigned char packed[4096];
-    z_stream z = {.next_in = (unsigned char *)plain->data, .avail_in = (uInt)plain->size, .next_out = packed,
+    z_stream z = {.next_in = (unsigned char *)plain->data,
+                  .avail_in = (uInt)plain->size,
+                  .next_out = packed,
                   .avail_out = sizeof packed};
     assert_int_equal(deflateInit2(&z, 9, Z_DEFLATED, window_bits, 8, Z_DEFAULT_STRATEGY), Z_OK);
     assert_int_equal(deflate(&z, Z_FINISH), Z_STREAM_END);
@@ -80,7 +82,7 @@ static void put_gzip(dem_buffer *out, const dem_buffer *plain, int window_bits)
     deflateEnd(&z);
 }
 
-static const char *const nrrd_types[] = {"uchar", "int8_t", "unsigned short", "short",  "uint",
+static const char *const nrrd_types[] = {"uchar", "int8_t", "unsigned short", "short", "uint",
                                          "int",   "uint64", "long long",      "float", "double"};
 
 static void every_type_and_order_of_nrrd_is_read(void **state)
@@ -90,8 +92,9 @@ static void every_type_and_order_of_nrrd_is_read(void **state)
         for (int big = 0; big < 2; big++)
             for (int packed = 0; packed < 2; packed++) {
                 dem_buffer file = {0}, plain = {0};
-                dem_buffer_print(&file, "NRRD0004\n# a comment\ntype: %s\ndimension: 3\nsizes: 4 3 2\nencoding: %s\n"
-                                        "endian: %s\nkey:=value: with colon\nspacings: 1 2 3\n\n",
+                dem_buffer_print(&file,
+                                 "NRRD0004\n# a comment\ntype: %s\ndimension: 3\nsizes: 4 3 2\nencoding: %s\n"
+                                 "endian: %s\nkey:=value: with colon\nspacings: 1 2 3\n\n",
                                  nrrd_types[type], packed ? "gzip" : "raw", big ? "big" : "little");
                 put_voxels(&plain, (dem_voxel_type)type, big);
                 if (packed)
@@ -131,7 +134,8 @@ static void text_skips_and_spare_axes_are_read(void **state)
     check_counting(&skipping, NULL, __LINE__);
     dem_buffer_release(&skipping);
     dem_buffer at_end = {0};
-    dem_buffer_text(&at_end, "NRRD0004\ntype: uint8\ndimension: 3\nsizes: 4 3 2\nencoding: raw\nbyte skip: -1\n\nanything");
+    dem_buffer_text(&at_end,
+                    "NRRD0004\ntype: uint8\ndimension: 3\nsizes: 4 3 2\nencoding: raw\nbyte skip: -1\n\nanything");
     put_voxels(&at_end, DEM_VOXEL_UINT8, false);
     check_counting(&at_end, NULL, __LINE__);
     dem_buffer_release(&at_end);
@@ -143,10 +147,11 @@ static void meta_images_are_read(void **state)
     for (int packed = 0; packed < 2; packed++)
         for (int big = 0; big < 2; big++) {
             dem_buffer file = {0}, plain = {0};
-            dem_buffer_print(&file, "ObjectType = Image\nNDims = 3\nBinaryData = True\nBinaryDataByteOrderMSB = %s\n"
-                                    "CompressedData = %s\nTransformMatrix = 0 1 0 1 0 0 0 0 1\nOffset = 1 2 3\n"
-                                    "ElementSpacing = 0.5 0.5 2\nDimSize = 4 3 2\nElementType = MET_USHORT\n"
-                                    "ElementDataFile = LOCAL\n",
+            dem_buffer_print(&file,
+                             "ObjectType = Image\nNDims = 3\nBinaryData = True\nBinaryDataByteOrderMSB = %s\n"
+                             "CompressedData = %s\nTransformMatrix = 0 1 0 1 0 0 0 0 1\nOffset = 1 2 3\n"
+                             "ElementSpacing = 0.5 0.5 2\nDimSize = 4 3 2\nElementType = MET_USHORT\n"
+                             "ElementDataFile = LOCAL\n",
                              big ? "True" : "False", packed ? "True" : "False");
             put_voxels(&plain, DEM_VOXEL_UINT16, big);
             if (packed)
@@ -178,8 +183,16 @@ static void raw_voxels_are_read_if_the_size_is_right(void **state)
     check(parse(file.data, file.size, "4x3x2 int32 big", &v, &error) == DEM_BAD_INPUT);
     check(strstr(error.text, "--raw") != NULL);
     dem_buffer_release(&file);
-    static const char *const wrong[] = {"", "4x3 uint8", "4x3x2", "4x3x2 uint9", "0x3x2 uint8", "-1x3x2 uint8", "4x3x2x5 uint8",
-                                        "4x3x2 uint8 skip", "4x3x2 uint8 skip -1", "999999999x999999999x999999999 uint8"};
+    static const char *const wrong[] = {"",
+                                        "4x3 uint8",
+                                        "4x3x2",
+                                        "4x3x2 uint9",
+                                        "0x3x2 uint8",
+                                        "-1x3x2 uint8",
+                                        "4x3x2x5 uint8",
+                                        "4x3x2 uint8 skip",
+                                        "4x3x2 uint8 skip -1",
+                                        "999999999x999999999x999999999 uint8"};
     dem_volume_raw raw;
     for (size_t i = 0; i < sizeof wrong / sizeof *wrong; i++)
         check(dem_volume_raw_parse(wrong[i], &raw, &error) == DEM_USAGE);
@@ -216,8 +229,8 @@ static void refused(const char *text, size_t size, long at_line, const char *wor
     dem_status status = parse(text, size, NULL, &v, &error);
     if (status != DEM_BAD_INPUT || !strstr(error.text, words) || !strchr(error.text, ';') || strchr(error.text, '\n') ||
         (at_line && error.line != at_line) || v.labels) {
-        print_error("%.300s\nstatus %d: line %ld: %s\nwant line %ld: %s\n", text, status, error.line, error.text, at_line,
-                    words);
+        print_error("%.300s\nstatus %d: line %ld: %s\nwant line %ld: %s\n", text, status, error.line, error.text,
+                    at_line, words);
         fail();
     }
 }
@@ -270,8 +283,10 @@ static void malformed_volumes_are_refused(void **state)
         {"NDims = 3\nDimSize = 1 1 1\nElementDataFile = LOCAL\na", "ElementType", 0},
         {"NDims = 2\nDimSize = 1 1\nElementType = MET_UCHAR\nElementDataFile = LOCAL\na", "NDims is 2", 0},
         {"NDims = 3\nDimSize = 1 1 1\nElementType = MET_OTHER\nElementDataFile = LOCAL\na", "MET_OTHER", 3},
-        {"NDims = 3\nDimSize = 1 1 1\nElementType = MET_UCHAR\nElementSpacing = 1 0 1\nElementDataFile = LOCAL\na", "positive", 0},
-        {"NDims = 3\nDimSize = 1 1 1\nElementType = MET_UCHAR\nElementNumberOfChannels = 3\nElementDataFile = LOCAL\na", "3 values", 4},
+        {"NDims = 3\nDimSize = 1 1 1\nElementType = MET_UCHAR\nElementSpacing = 1 0 1\nElementDataFile = LOCAL\na",
+         "positive", 0},
+        {"NDims = 3\nDimSize = 1 1 1\nElementType = MET_UCHAR\nElementNumberOfChannels = 3\nElementDataFile = LOCAL\na",
+         "3 values", 4},
         {"NDims = 3\nDimSize = 9 9 9\nElementType = MET_UCHAR\nElementDataFile = LOCAL\na", "729 bytes", 0},
     };
     for (size_t i = 0; i < sizeof cases / sizeof *cases; i++)

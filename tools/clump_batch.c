@@ -108,7 +108,7 @@ static void run_task(batch *b, task *t, int threads)
     if (threads)
         ctx.threads = threads;
     if (b->asked->resume && job_is_done(t->name, b->options))
-        job_keep(t->input, t->name, b->options, &t->results);
+        job_keep(t->input, t->name, t->volume, t->label, b->options, &t->results);
     else if (t->volume)
         job_run_label(&ctx, t->volume, t->label, t->input, t->name, b->options, &t->results);
     else

@@ -98,9 +98,10 @@ static dem_status add_path(clump_inputs *inputs, char *path, const clump_input_o
     inputs->several = true;
     dem_status status = add_folder(inputs, path, options, 0, error);
     if (status == DEM_OK && inputs->count == before)
-        status = dem_fail_at(error, DEM_BAD_INPUT, path, 0, "no mesh in this folder; %s",
-                             options->recursive ? "known are files ending in stl, obj, ply, off, glb, 3mf, nrrd, mha ..."
-                                                : "--recursive also looks into the folders in it");
+        status =
+            dem_fail_at(error, DEM_BAD_INPUT, path, 0, "no mesh in this folder; %s",
+                        options->recursive ? "known are files ending in stl, obj, ply, off, glb, 3mf, nrrd, mha ..."
+                                           : "--recursive also looks into the folders in it");
     free(path);
     return status;
 }

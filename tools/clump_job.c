@@ -178,7 +178,7 @@ static dem_status finish_body(job *j, job_result *r, dem_mesh *mesh, size_t body
     make.name = r->name;
     make.source_mesh = strcmp(j->input, "-") ? dem_file_name(j->input) : "standard input";
     make.source_sha256 = j->sha256;
-    make.source_unit = o->unit_name;
+    make.source_unit = j->volume && !o->unit_given && *j->volume->unit_name ? j->volume->unit_name : o->unit_name;
     DEM_TRY(dem_clump_make(&j->ctx, mesh, &make, &r->clump, &r->pack, error));
     free(r->pack.balls);
     r->pack.balls = NULL;
@@ -292,9 +292,12 @@ bool job_is_done(const char *name, const job_options *o)
     return done;
 }
 
-void job_keep(const char *input, const char *name, const job_options *o, job_results *results)
+void job_keep(const char *input, const char *name, const dem_volume *volume, const dem_label *label,
+              const job_options *o, job_results *results)
 {
-    job j = {.input = input, .options = o, .results = results};
+    job j = {.input = input, .volume = volume, .options = o, .results = results};
+    if (volume)
+        j.label = *label;
     job_result *r = add_result(&j, name);
     if (!r)
         return;

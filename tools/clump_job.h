@@ -60,8 +60,9 @@ void job_run_label(const dem_ctx *ctx, const dem_volume *volume, const dem_label
 
 /// Whether all files of a grain of a batch are there.
 bool job_is_done(const char *name, const job_options *options);
-/// A result for one that is, read from its clump file if there is one.
-void job_keep(const char *input, const char *name, const job_options *options, job_results *results);
+/// A result for one that is, read from its clump file if there is one; `volume` NULL: of a mesh.
+void job_keep(const char *input, const char *name, const dem_volume *volume, const dem_label *label,
+              const job_options *options, job_results *results);
 /// A result for an input that did not even come to a grain.
 void job_fail(const char *input, const char *name, const dem_error *error, job_results *results);
 

@@ -47,6 +47,7 @@ static void set_unit(const dem_ctx *ctx, const job_options *options, const batch
     if (asked->spacing.x > 0) {
         dem_volume_space(v, asked->spacing);
         v->origin = (dem_vec3){0};
+        v->unit_name[0] = 0;
     } else if (options->unit_given) {
         dem_volume_scale(v, options->unit);
         if (v->unit > 0 && fabs(v->unit / options->unit - 1) > 1e-9)
@@ -98,8 +99,9 @@ static dem_status choose(const dem_ctx *ctx, const clump_input *input, const bat
         list->count++;
     }
     if (list->count == 0)
-        return dem_fail(error, DEM_BAD_INPUT, "none of %zu labels is left: %zu not asked for, %zu of fewer than %ld voxels "
-                                              "(--min-voxels), %zu cut by the border",
+        return dem_fail(error, DEM_BAD_INPUT,
+                        "none of %zu labels is left: %zu not asked for, %zu of fewer than %ld voxels "
+                        "(--min-voxels), %zu cut by the border",
                         found, out.unasked, out.small, asked->min_voxels, out.cut);
     if (out.small)
         dem_log(ctx, DEM_LOG_WARNING, "left out %zu label%s of fewer than %ld voxels (--min-voxels)", out.small,
@@ -108,8 +110,8 @@ static dem_status choose(const dem_ctx *ctx, const clump_input *input, const bat
         dem_log(ctx, DEM_LOG_WARNING, "left out %zu label%s that the border of the image cuts", out.cut,
                 out.cut == 1 ? "" : "s");
     if (cut)
-        dem_log(ctx, DEM_LOG_WARNING, "%zu label%s cut flat by the border of the image; --drop-border leaves them out", cut,
-                cut == 1 ? " is" : "s are");
+        dem_log(ctx, DEM_LOG_WARNING, "%zu label%s cut flat by the border of the image; --drop-border leaves them out",
+                cut, cut == 1 ? " is" : "s are");
     return DEM_OK;
 }
 

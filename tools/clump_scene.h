@@ -9,7 +9,7 @@ typedef struct clump_scene {
     dem_buffer bodies;  ///< rows of the CSV
     char **shapes;      ///< names of the clumps
     size_t count, capacity;
-    double density;     ///< [kg/m^3]
+    double density;  ///< [kg/m^3]
 } clump_scene;
 
 /// Adds a clump that has been made.

@@ -12,8 +12,8 @@
 
 static dem_status cannot_write(const clump_table *table, dem_error *error)
 {
-    return dem_fail_at(error, DEM_CANNOT_WRITE, table->path, 0, "cannot write the table: %s; choose another place with -o",
-                       strerror(errno));
+    return dem_fail_at(error, DEM_CANNOT_WRITE, table->path, 0,
+                       "cannot write the table: %s; choose another place with -o", strerror(errno));
 }
 
 static dem_status put(clump_table *table, dem_buffer *text, dem_error *error)

@@ -6,7 +6,7 @@
 
 /// Rows go to PATH.part, which becomes PATH when it is closed.
 typedef struct clump_table {
-    FILE *file;          ///< NULL: no table
+    FILE *file;  ///< NULL: no table
     const char *path;
     char *part;          ///< NULL: written directly (standard output, a pipe)
     bool labels;         ///< with the columns of labels

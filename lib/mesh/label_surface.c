@@ -98,15 +98,15 @@ typedef struct pinch {  // a middle point of one of the pairs of faces at an edg
 
 typedef struct surface_work {
     const dem_voxels *voxels;
-    size_t step[3];            // from a voxel to the next
+    ptrdiff_t step[3];  // from a voxel to the next
     ring_table rings;
-    uint32_t *plane[2];        // first vertex of the lattice points of two layers, one after the other
+    uint32_t *plane[2];  // first vertex of the lattice points of two layers, one after the other
     face *faces;
     size_t face_count, face_capacity;
     dem_vec3 *points, *moved;  // [voxels] the lattice point (i, j, k) is the lower corner of voxel (i, j, k)
     dem_vec3 *sums;
     size_t vertex_count, vertex_capacity;
-    pinch *pinches;            // of the current layer
+    pinch *pinches;  // of the current layer
     size_t pinch_count, pinch_capacity;
     uint32_t (*links)[2];
     size_t link_count, link_capacity;
@@ -117,14 +117,15 @@ typedef struct surface_work {
 static int inside_bits(const surface_work *w, size_t voxel)
 {
     const uint8_t *in = w->voxels->inside + voxel;
-    size_t x = w->step[0], y = w->step[1], z = w->step[2];
-    return in[0] << 7 | in[0 - x] << 6 | in[0 - y] << 5 | in[0 - x - y] << 4 | in[0 - z] << 3 | in[0 - x - z] << 2 |
-           in[0 - y - z] << 1 | in[0 - x - y - z];
+    ptrdiff_t x = w->step[0], y = w->step[1], z = w->step[2];
+    return in[0] << 7 | in[-x] << 6 | in[-y] << 5 | in[-x - y] << 4 | in[-z] << 3 | in[-x - z] << 2 | in[-y - z] << 1 |
+           in[-x - y - z];
 }
 
 static bool add_vertex(surface_work *w, dem_vec3 point)
 {
-    if (w->vertex_count >= UINT32_MAX - 1 || !dem_grow(&w->points, &w->vertex_capacity, w->vertex_count, sizeof *w->points))
+    if (w->vertex_count >= UINT32_MAX - 1 ||
+        !dem_grow(&w->points, &w->vertex_capacity, w->vertex_count, sizeof *w->points))
         return false;
     w->points[w->vertex_count++] = point;
     return true;
@@ -147,7 +148,8 @@ static bool number_plane(surface_work *w, size_t z)
 }
 
 // the vertex of a face at the lattice point `at`; the inside voxel of the face and the outside one lie about it
-static uint32_t corner_vertex(const surface_work *w, const size_t at[3], const size_t inside[3], const size_t outside[3])
+static uint32_t corner_vertex(const surface_work *w, const size_t at[3], const size_t inside[3],
+                              const size_t outside[3])
 {
     const size_t *n = w->voxels->size;
     int a = 0, b = 0;
@@ -163,10 +165,11 @@ static uint32_t corner_vertex(const surface_work *w, const size_t at[3], const s
 static bool middle_vertex(surface_work *w, const size_t at[3], int along, size_t voxel, uint32_t *vertex)
 {
     const size_t *n = w->voxels->size;
-    size_t here = (at[2] * n[1] + at[1]) * n[0] + at[0], u = w->step[(along + 1) % 3], v = w->step[(along + 2) % 3];
+    size_t here = (at[2] * n[1] + at[1]) * n[0] + at[0];
+    ptrdiff_t u = w->step[(along + 1) % 3], v = w->step[(along + 2) % 3];
     const uint8_t *in = w->voxels->inside + here;
     *vertex = NO_VERTEX;
-    if (in[0] != in[0 - u - v] || in[0 - u] != in[0 - v] || in[0] == in[0 - u])
+    if (in[0] != in[-u - v] || in[-u] != in[-v] || in[0] == in[-u])
         return true;
     size_t edge = 3 * here + (size_t)along;
     for (size_t i = w->pinch_count; i-- > 0 && w->pinches[i].voxel == voxel;)
@@ -232,8 +235,8 @@ static bool make_faces(surface_work *w)
 {
     const size_t *n = w->voxels->size;
     w->step[0] = 1;
-    w->step[1] = n[0];
-    w->step[2] = n[0] * n[1];
+    w->step[1] = (ptrdiff_t)n[0];
+    w->step[2] = (ptrdiff_t)(n[0] * n[1]);
     fill_rings(&w->rings);
     for (int i = 0; i < 2; i++)
         if (!(w->plane[i] = dem_alloc(n[0] * n[1], sizeof *w->plane[i])))
@@ -334,7 +337,8 @@ static void smooth_step(surface_work *w, double factor)
         w->sums[b] = v3_add(w->sums[b], w->moved[a]);
     }
     for (size_t i = 0; i < w->vertex_count; i++) {
-        dem_vec3 mean = v3_scale(w->sums[i], 1.0 / w->degree[i]), p = v3_along(w->moved[i], factor, v3_sub(mean, w->moved[i]));
+        dem_vec3 mean = v3_scale(w->sums[i], 1.0 / w->degree[i]),
+                 p = v3_along(w->moved[i], factor, v3_sub(mean, w->moved[i]));
         for (int k = 0; k < 3; k++) {
             double at = v3_get(w->points[i], k);
             v3_set(&p, k, fmin(fmax(v3_get(p, k), at - FARTHEST), at + FARTHEST));
@@ -430,7 +434,8 @@ static dem_status make_surface(surface_work *w, const dem_volume *volume, dem_me
     if (!w->moved || !w->sums)
         return dem_fail_memory(error);
     if (!smooth(w, mesh))
-        return dem_fail(error, DEM_BAD_INPUT, "the label has no body a surface could be put around; clean the segmentation");
+        return dem_fail(error, DEM_BAD_INPUT,
+                        "the label has no body a surface could be put around; clean the segmentation");
     place(w, volume, mesh);
     return DEM_OK;
 }

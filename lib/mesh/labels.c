@@ -99,7 +99,8 @@ dem_status dem_labels_find(const dem_ctx *ctx, const dem_volume *volume, dem_lab
             status = take_row(&map, volume, y, z, error);
     }
     if (status == DEM_OK && map.count == 0)
-        status = dem_fail(error, DEM_BAD_INPUT, "no label: all voxels are 0, which is the background; segment the image");
+        status =
+            dem_fail(error, DEM_BAD_INPUT, "no label: all voxels are 0, which is the background; segment the image");
     free(map.slots);
     if (status != DEM_OK) {
         free(map.labels);

@@ -22,20 +22,19 @@ static dem_status read_type(meta *m, const char *value)
     static const struct {
         const char *name;
         dem_voxel_type type;
-    } types[] = {{"MET_UCHAR", DEM_VOXEL_UINT8},      {"MET_CHAR", DEM_VOXEL_INT8},
-                 {"MET_USHORT", DEM_VOXEL_UINT16},    {"MET_SHORT", DEM_VOXEL_INT16},
-                 {"MET_UINT", DEM_VOXEL_UINT32},      {"MET_INT", DEM_VOXEL_INT32},
-                 {"MET_ULONG", DEM_VOXEL_UINT32},     {"MET_LONG", DEM_VOXEL_INT32},
-                 {"MET_ULONG_LONG", DEM_VOXEL_UINT64}, {"MET_LONG_LONG", DEM_VOXEL_INT64},
-                 {"MET_FLOAT", DEM_VOXEL_FLOAT},      {"MET_DOUBLE", DEM_VOXEL_DOUBLE}};
+    } types[] = {
+        {"MET_UCHAR", DEM_VOXEL_UINT8},     {"MET_CHAR", DEM_VOXEL_INT8},   {"MET_USHORT", DEM_VOXEL_UINT16},
+        {"MET_SHORT", DEM_VOXEL_INT16},     {"MET_UINT", DEM_VOXEL_UINT32}, {"MET_INT", DEM_VOXEL_INT32},
+        {"MET_ULONG", DEM_VOXEL_UINT32},    {"MET_LONG", DEM_VOXEL_INT32},  {"MET_ULONG_LONG", DEM_VOXEL_UINT64},
+        {"MET_LONG_LONG", DEM_VOXEL_INT64}, {"MET_FLOAT", DEM_VOXEL_FLOAT}, {"MET_DOUBLE", DEM_VOXEL_DOUBLE}};
     for (size_t i = 0; i < sizeof types / sizeof *types; i++)
         if (strcasecmp(value, types[i].name) == 0) {
             m->header->type = types[i].type;
             m->has_type = true;
             return DEM_OK;
         }
-    return dem_reader_fail(&m->r, "voxels of type '%.40s' are no labels; save them as MET_UCHAR, MET_USHORT or MET_UINT",
-                           value);
+    return dem_reader_fail(
+        &m->r, "voxels of type '%.40s' are no labels; save them as MET_UCHAR, MET_USHORT or MET_UINT", value);
 }
 
 static dem_status read_data_file(meta *m, const char *value)
@@ -127,8 +126,8 @@ static dem_status finish(meta *m)
     if (!m->has_type)
         return dem_reader_fail(&m->r, "'ElementType' is missing; write the image again");
     if (m->axes != 3 || m->sizes_given != 3)
-        return dem_reader_fail(&m->r, "NDims is %d with %d sizes; save one image of labels in three dimensions", m->axes,
-                               m->sizes_given);
+        return dem_reader_fail(&m->r, "NDims is %d with %d sizes; save one image of labels in three dimensions",
+                               m->axes, m->sizes_given);
     h->big_endian = m->big_endian;
     h->coding = m->text ? DEM_CODING_TEXT : m->compressed ? DEM_CODING_GZIP : DEM_CODING_RAW;
     const double *spacing = m->spacings_given ? m->spacings : m->elements;
@@ -159,8 +158,9 @@ dem_status dem_meta_header(const dem_ctx *ctx, const char *name, const char *byt
         if (!*line || *line == '#')
             continue;
         if (!dem_header_split(line, "=", &key, &value))
-            return dem_reader_fail(&m.r, "not a line 'Key = value' of a MetaImage header; name the header file (mhd), or "
-                                         "give the sizes with --raw");
+            return dem_reader_fail(&m.r,
+                                   "not a line 'Key = value' of a MetaImage header; name the header file (mhd), or "
+                                   "give the sizes with --raw");
         DEM_TRY(read_key(&m, key, value));
     }
     header->data = m.r.next ? (size_t)(m.r.next - bytes) : size;

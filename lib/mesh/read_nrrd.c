@@ -27,16 +27,17 @@ static dem_status read_type(nrrd *n, const char *value)
     static const struct {
         const char *names;
         dem_voxel_type type;
-    } types[] = {{"|signed char|int8|int8_t|", DEM_VOXEL_INT8},
-                 {"|uchar|unsigned char|uint8|uint8_t|", DEM_VOXEL_UINT8},
-                 {"|short|short int|signed short|signed short int|int16|int16_t|", DEM_VOXEL_INT16},
-                 {"|ushort|unsigned short|unsigned short int|uint16|uint16_t|", DEM_VOXEL_UINT16},
-                 {"|int|signed int|int32|int32_t|", DEM_VOXEL_INT32},
-                 {"|uint|unsigned int|uint32|uint32_t|", DEM_VOXEL_UINT32},
-                 {"|longlong|long long|long long int|signed long long|signed long long int|int64|int64_t|", DEM_VOXEL_INT64},
-                 {"|ulonglong|unsigned long long|unsigned long long int|uint64|uint64_t|", DEM_VOXEL_UINT64},
-                 {"|float|", DEM_VOXEL_FLOAT},
-                 {"|double|", DEM_VOXEL_DOUBLE}};
+    } types[] = {
+        {"|signed char|int8|int8_t|", DEM_VOXEL_INT8},
+        {"|uchar|unsigned char|uint8|uint8_t|", DEM_VOXEL_UINT8},
+        {"|short|short int|signed short|signed short int|int16|int16_t|", DEM_VOXEL_INT16},
+        {"|ushort|unsigned short|unsigned short int|uint16|uint16_t|", DEM_VOXEL_UINT16},
+        {"|int|signed int|int32|int32_t|", DEM_VOXEL_INT32},
+        {"|uint|unsigned int|uint32|uint32_t|", DEM_VOXEL_UINT32},
+        {"|longlong|long long|long long int|signed long long|signed long long int|int64|int64_t|", DEM_VOXEL_INT64},
+        {"|ulonglong|unsigned long long|unsigned long long int|uint64|uint64_t|", DEM_VOXEL_UINT64},
+        {"|float|", DEM_VOXEL_FLOAT},
+        {"|double|", DEM_VOXEL_DOUBLE}};
     char wanted[64];
     snprintf(wanted, sizeof wanted, "|%.60s|", value);
     for (size_t i = 0; i < sizeof types / sizeof *types; i++)
@@ -45,7 +46,8 @@ static dem_status read_type(nrrd *n, const char *value)
             n->has_type = true;
             return DEM_OK;
         }
-    return dem_reader_fail(&n->r, "voxels of type '%.40s' are no labels; save the labels as uint8, uint16 or uint32", value);
+    return dem_reader_fail(&n->r, "voxels of type '%.40s' are no labels; save the labels as uint8, uint16 or uint32",
+                           value);
 }
 
 static dem_status read_coding(nrrd *n, const char *value)
@@ -81,8 +83,8 @@ static dem_status read_directions(nrrd *n, const char *value)
                 return wrong(n, "space directions", value);
             snprintf(vector, sizeof vector, "%.*s", (int)(end + 1 - at), at);
             if (dem_header_numbers(vector, x, 4) != 3)
-                return dem_reader_fail(&n->r, "the direction %.60s has not three numbers; write an image in three dimensions",
-                                       vector);
+                return dem_reader_fail(
+                    &n->r, "the direction %.60s has not three numbers; write an image in three dimensions", vector);
             n->directions[axis] = (dem_vec3){x[0], x[1], x[2]};
             at = end + 1;
         }
@@ -147,8 +149,8 @@ static dem_status read_numbers(nrrd *n, const char *field, const char *value)
 
 static dem_status read_field(nrrd *n, const char *field, const char *value)
 {
-    static const char *const numbers[] = {"sizes",     "spacings", "space origin", "dimension", "byte skip",
-                                          "byteskip", "line skip", "lineskip"};
+    static const char *const numbers[] = {"sizes",     "spacings", "space origin", "dimension",
+                                          "byte skip", "byteskip", "line skip",    "lineskip"};
     for (size_t i = 0; i < sizeof numbers / sizeof *numbers; i++)
         if (strcasecmp(field, numbers[i]) == 0)
             return read_numbers(n, field, value);
@@ -185,7 +187,8 @@ static dem_status choose_axes(nrrd *n)
             continue;
         }
         if (count == 3)
-            return dem_reader_fail(&n->r, "the image has %d axes; save one image of labels in three dimensions", n->axes);
+            return dem_reader_fail(&n->r, "the image has %d axes; save one image of labels in three dimensions",
+                                   n->axes);
         kept[count++] = i;
     }
     double sizes[3];
@@ -212,8 +215,10 @@ static dem_status finish(nrrd *n)
     DEM_TRY(choose_axes(n));
     DEM_TRY(dem_header_check(&n->r, h));
     dem_error unknown;
+    memcpy(h->volume.unit_name, n->unit, sizeof n->unit);
     if (*n->unit && dem_unit(n->unit, DEM_DIMENSION_LENGTH, &h->volume.unit, &unknown) != DEM_OK) {
         h->volume.unit = 0;
+        h->volume.unit_name[0] = 0;
         dem_log(n->ctx, DEM_LOG_WARNING, "the header's unit '%s' is not known; give it with --unit", n->unit);
     }
     return DEM_OK;

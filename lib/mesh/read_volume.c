@@ -14,10 +14,10 @@
 #include "mesh/volume_header.h"
 
 static const int type_bytes[] = {1, 1, 2, 2, 4, 4, 8, 8, 4, 8};
-static const char *const type_names[] = {"uint8",  "int8",   "uint16", "int16", "uint32",
-                                         "int32",  "uint64", "int64",  "float", "double"};
-static const double THINNEST = 1e-6;     // volume of a voxel over the product of its edges
-static const double DEFLATE_MOST = 1040; // bytes that one byte can hold
+static const char *const type_names[] = {"uint8", "int8",   "uint16", "int16", "uint32",
+                                         "int32", "uint64", "int64",  "float", "double"};
+static const double THINNEST = 1e-6;      // volume of a voxel over the product of its edges
+static const double DEFLATE_MOST = 1040;  // bytes that one byte can hold
 
 // ---- what the headers share
 
@@ -171,8 +171,8 @@ static dem_status inflate_all(volume_work *w, z_stream *z, unsigned char *out, s
         if (done > need)
             return refuse(w, "the compressed data are more than the header tells; correct sizes or type");
         if (code == Z_BUF_ERROR || (code == Z_OK && left == 0 && done < need && z->avail_out))
-            return refuse(w, "the compressed data end after %zu of %zu bytes; the file is cut short, copy it again", done,
-                          need);
+            return refuse(w, "the compressed data end after %zu of %zu bytes; the file is cut short, copy it again",
+                          done, need);
         if (code != Z_OK && code != Z_STREAM_END)
             return refuse(w, "the compressed data are damaged (%s); copy the file again", z->msg ? z->msg : "zlib");
         if (dem_progress(w->ctx, "unpacking", (double)done / (double)need))
@@ -187,8 +187,10 @@ static dem_status take_gzip(volume_work *w)
     size_t need = needed_bytes(w);
     // before memory is asked for
     if ((double)need > DEFLATE_MOST * (double)(w->bytes.size - w->at) + 64)
-        return refuse(w, "the compressed data cannot hold %zu bytes; the file is cut short or its sizes are wrong, "
-                         "write it again", need);
+        return refuse(w,
+                      "the compressed data cannot hold %zu bytes; the file is cut short or its sizes are wrong, "
+                      "write it again",
+                      need);
     unsigned char *out = dem_alloc(need, 1);
     z_stream z = {0};
     if (!out || inflateInit2(&z, 15 + 32) != Z_OK) {
@@ -274,10 +276,14 @@ static size_t clear_negative(void *data, size_t count, int width)
 static double wide_value(const void *data, size_t at, dem_voxel_type type)
 {
     switch (type) {
-    case DEM_VOXEL_UINT64: return (double)((const uint64_t *)data)[at];
-    case DEM_VOXEL_INT64: return (double)((const int64_t *)data)[at];
-    case DEM_VOXEL_FLOAT: return (double)((const float *)data)[at];
-    default: return ((const double *)data)[at];
+    case DEM_VOXEL_UINT64:
+        return (double)((const uint64_t *)data)[at];
+    case DEM_VOXEL_INT64:
+        return (double)((const int64_t *)data)[at];
+    case DEM_VOXEL_FLOAT:
+        return (double)((const float *)data)[at];
+    default:
+        return ((const double *)data)[at];
     }
 }
 
@@ -288,8 +294,9 @@ static dem_status narrow(volume_work *w, size_t count, size_t *negative)
     for (size_t i = 0; i < count; i++) {
         double value = wide_value(v->labels, i, w->header.type);
         if (!(value == floor(value)) || !(value <= UINT32_MAX))
-            return refuse(w, "voxel (%zu, %zu, %zu) holds %g, which is no label; segment the image first and save the "
-                             "labels as uint8, uint16 or uint32",
+            return refuse(w,
+                          "voxel (%zu, %zu, %zu) holds %g, which is no label; segment the image first and save the "
+                          "labels as uint8, uint16 or uint32",
                           i % v->size[0], i / v->size[0] % v->size[1], i / v->size[0] / v->size[1], value);
         *negative += value < 0;
         uint32_t label = value > 0 ? (uint32_t)value : 0;
@@ -326,8 +333,8 @@ static dem_status read_header(volume_work *w, const dem_volume_raw *raw)
     dem_volume_header *h = &w->header;
     const char *bytes = w->bytes.data;
     if (raw && raw->size[0]) {
-        *h = (dem_volume_header){.type = raw->type, .big_endian = raw->big_endian, .skip = (int64_t)raw->skip,
-                                 .exact = true};
+        *h = (dem_volume_header){
+            .type = raw->type, .big_endian = raw->big_endian, .skip = (int64_t)raw->skip, .exact = true};
         memcpy(h->volume.size, raw->size, sizeof raw->size);
         dem_volume_space(&h->volume, (dem_vec3){1, 1, 1});
         h->volume.spaced = false;
@@ -406,7 +413,8 @@ dem_status dem_volume_read(const dem_ctx *ctx, const char *path, const dem_volum
         dem_buffer_release(&bytes);
         return dem_fail_memory(error);
     }
-    dem_status status = dem_volume_read_bytes(&about, piped ? "standard input" : path, folder, &bytes, raw, volume, error);
+    dem_status status =
+        dem_volume_read_bytes(&about, piped ? "standard input" : path, folder, &bytes, raw, volume, error);
     free(folder);
     return status;
 }
@@ -488,6 +496,8 @@ dem_status dem_volume_raw_parse(const char *text, dem_volume_raw *raw, dem_error
     if (fine && typed)
         return DEM_OK;
     *raw = (dem_volume_raw){0};
-    return dem_fail(error, DEM_USAGE, "'%.100s' is not as in '512x512x300 uint16' with 'big' and 'skip BYTES' where "
-                                      "needed; types are uint8, int8, ... uint64, int64, float", text);
+    return dem_fail(error, DEM_USAGE,
+                    "'%.100s' is not as in '512x512x300 uint16' with 'big' and 'skip BYTES' where "
+                    "needed; types are uint8, int8, ... uint64, int64, float",
+                    text);
 }

@@ -16,16 +16,16 @@ typedef enum dem_voxel_type {
     DEM_VOXEL_INT32,
     DEM_VOXEL_UINT64,
     DEM_VOXEL_INT64,
-    DEM_VOXEL_FLOAT,   ///< of whole numbers
+    DEM_VOXEL_FLOAT,  ///< of whole numbers
     DEM_VOXEL_DOUBLE,
 } dem_voxel_type;
 
 /// What a volume without a header is; size[0] 0: every file has one.
 typedef struct dem_volume_raw {
-    size_t size[3];   ///< voxels along x (the fastest), y, z
+    size_t size[3];  ///< voxels along x (the fastest), y, z
     dem_voxel_type type;
     bool big_endian;
-    size_t skip;      ///< bytes before the first voxel
+    size_t skip;  ///< bytes before the first voxel
 } dem_volume_raw;
 
 /// Reads "512x512x300 uint16" and, behind it, "big" or "little" and "skip 512".
@@ -39,8 +39,9 @@ typedef struct dem_volume {
     dem_vec3 axes[3];  ///< from a voxel to the next [units of the file]
     dem_vec3 origin;   ///< centre of the first voxel [units of the file]
     double unit;       ///< length of one unit as the header names it [m]; 0: it does not
-    bool spaced;       ///< the header says how large a voxel is
-    char sha256[65];   ///< of the file (with the data apart: of the header)
+    char unit_name[32];
+    bool spaced;      ///< the header says how large a voxel is
+    char sha256[65];  ///< of the file (with the data apart: of the header)
 } dem_volume;
 
 /// Reads NRRD (attached or detached; raw, gzip, text), MetaImage (mhd, mha) or, with `raw`, voxels without a header.

@@ -10,15 +10,15 @@ enum { VOLUME_AXES = 16, VOLUME_LINE = 2048 };
 typedef enum dem_volume_coding { DEM_CODING_RAW, DEM_CODING_GZIP, DEM_CODING_TEXT } dem_volume_coding;
 
 typedef struct dem_volume_header {
-    dem_volume volume;      ///< without labels
+    dem_volume volume;  ///< without labels
     dem_voxel_type type;
     dem_volume_coding coding;
     bool big_endian;
-    char file[VOLUME_LINE]; ///< of the data, beside the header; "": behind the header
-    size_t data;            ///< where the data begin, or after reading a data file 0
-    int64_t skip;           ///< bytes to pass over, -1: the data are at the end
+    char file[VOLUME_LINE];  ///< of the data, beside the header; "": behind the header
+    size_t data;             ///< where the data begin, or after reading a data file 0
+    int64_t skip;            ///< bytes to pass over, -1: the data are at the end
     size_t skip_lines;
-    bool exact;             ///< the data end where the file does
+    bool exact;  ///< the data end where the file does
 } dem_volume_header;
 
 /// Each reads the header at the start of the bytes.

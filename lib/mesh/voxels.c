@@ -125,8 +125,9 @@ static dem_status choose(const dem_ctx *ctx, piece_work *w, dem_voxels *v, dem_k
     if (pieces == 1 || keep == DEM_KEEP_ALL)
         return DEM_OK;
     if (keep == DEM_KEEP_ONE && rest > CRUMBS)
-        return dem_fail(error, DEM_BAD_INPUT, "the label is in %zu pieces, the largest has %.0f %% of its voxels; use "
-                                              "--keep largest, --keep all or --split",
+        return dem_fail(error, DEM_BAD_INPUT,
+                        "the label is in %zu pieces, the largest has %.0f %% of its voxels; use "
+                        "--keep largest, --keep all or --split",
                         pieces, 100 * (1 - rest));
     dem_log(ctx, DEM_LOG_WARNING, "dropped %zu piece%s apart from the largest, %.2g %% of the voxels", pieces - 1,
             pieces == 2 ? "" : "s", 100 * rest);

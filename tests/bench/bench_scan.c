@@ -40,13 +40,15 @@ int main(int argc, char **argv)
     double pitch = (double)size / (double)grains;
     for (size_t i = 0; i < grains * grains * grains; i++)
         lumps[i] = make_lump(i, grains, pitch);
-    fprintf(file, "NRRD0004\ntype: uint16\ndimension: 3\nsizes: %zu %zu %zu\nencoding: raw\nendian: little\n"
-                  "space directions: (5,0,0) (0,5,0) (0,0,5)\nspace origin: (0,0,0)\nspace units: \"um\" \"um\" \"um\"\n\n",
+    fprintf(file,
+            "NRRD0004\ntype: uint16\ndimension: 3\nsizes: %zu %zu %zu\nencoding: raw\nendian: little\n"
+            "space directions: (5,0,0) (0,5,0) (0,0,5)\nspace origin: (0,0,0)\nspace units: \"um\" \"um\" \"um\"\n\n",
             size, size, size);
     for (size_t z = 0; z < size; z++) {
         for (size_t y = 0; y < size; y++)
             for (size_t x = 0; x < size; x++) {
-                size_t a = (size_t)((double)x / pitch), b = (size_t)((double)y / pitch), c = (size_t)((double)z / pitch);
+                size_t a = (size_t)((double)x / pitch), b = (size_t)((double)y / pitch),
+                       c = (size_t)((double)z / pitch);
                 size_t number = (c * grains + b) * grains + a;
                 bool in = is_in(&lumps[number], (double)x, (double)y, (double)z, pitch);
                 slice[y * size + x] = in ? (uint16_t)(number + 1) : 0;
