@@ -12,6 +12,7 @@
 #include "clump_report.h"
 #include "clump_scene.h"
 #include "clump_table.h"
+#include "out/picture.h"
 #include "out/sheet.h"
 
 enum { FAILURES_TOLD = 5 };
@@ -231,6 +232,17 @@ static int batch_status(const batch *b)
     return b->status == DEM_NO_MEMORY ? DEM_FAILED : (int)b->status;
 }
 
+// whether pictures can be made at all: better told before hours of packing than after each grain
+static dem_status try_picture(dem_error *error)
+{
+    const dem_ball ball = {{0, 0, 0}, 1};
+    const dem_mesh none = {0};
+    dem_image image;
+    dem_status status = dem_picture_render(&(dem_ctx){.threads = 1}, &none, &ball, 1, 8, 8, &image, NULL, error);
+    dem_image_free(&image);
+    return status;
+}
+
 int batch_run(const cli_tool *tool, const cli_common *common, const clump_inputs *inputs, const job_options *options,
               const batch_options *asked, job_results *results)
 {
@@ -239,6 +251,8 @@ int batch_run(const cli_tool *tool, const cli_common *common, const clump_inputs
     bool labels = false;
     for (size_t i = 0; i < inputs->count; i++)
         labels |= inputs->items[i].labels;
+    if (asked->sheet && try_picture(&error) != DEM_OK)
+        return cli_error(tool, &error);
     if (clump_table_open(&b.table, asked->table, labels, asked->resume, &error) != DEM_OK)
         return cli_error(tool, &error);
     if (asked->sheet && !(b.sheet = dem_sheet_create(asked->sheet))) {

@@ -101,7 +101,7 @@ static dem_status choose(const dem_ctx *ctx, const clump_input *input, const bat
     if (list->count == 0)
         return dem_fail(error, DEM_BAD_INPUT,
                         "none of %zu labels is left: %zu not asked for, %zu of fewer than %ld voxels "
-                        "(--min-voxels), %zu cut by the border",
+                        "(--min-voxels), %zu cut by the border; ask for others",
                         found, out.unasked, out.small, asked->min_voxels, out.cut);
     if (out.small)
         dem_log(ctx, DEM_LOG_WARNING, "left out %zu label%s of fewer than %ld voxels (--min-voxels)", out.small,
