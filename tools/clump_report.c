@@ -36,6 +36,11 @@ static void text_mesh(dem_buffer *out, const job_result *r)
     dem_buffer_print(out, "  mesh      %zu triangles, %zu vertices, %zu %s%s", m->triangles, m->vertices, m->bodies,
                      m->bodies == 1 ? "body" : "bodies", m->wrapped ? ", wrapped" : "");
     dem_buffer_print(out, "; %s\n", m->warnings ? "repaired, see the warnings" : "closed, nothing to repair");
+    if (r->pack.stand_in_triangles)
+        dem_buffer_print(out,
+                         "            spheres were sought in %zu triangles that stand for them: volume %+.3f %%, farthest "
+                         "vertex %.3f %% of d_eq\n",
+                         r->pack.stand_in_triangles, 100 * r->pack.stand_in_volume, 100 * r->pack.stand_in_distance);
 }
 
 static void text_shape(dem_buffer *out, const dem_shape *s)
@@ -167,6 +172,13 @@ static void json_clump(dem_json_writer *w, const job_result *r)
     dem_json_put_bool(w, "reached", r->pack.reached);
     dem_json_put_string(w, "moments", moments_text[r->pack.moments]);
     dem_json_put_number(w, "moment_residual", r->pack.moment_residual);
+    if (r->pack.stand_in_triangles) {
+        dem_json_open_object(w, "stand_in");
+        dem_json_put_whole(w, "triangles", (int64_t)r->pack.stand_in_triangles);
+        dem_json_put_number(w, "volume_change", r->pack.stand_in_volume);
+        dem_json_put_number(w, "distance", r->pack.stand_in_distance);
+        dem_json_close(w, '}');
+    }
     dem_clump_put_figures(w, &c);
     dem_json_open_object(w, "solid");
     dem_json_put_number(w, "volume", r->solid.volume);
