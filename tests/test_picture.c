@@ -199,7 +199,7 @@ static void everything_is_in_the_picture_up_to_its_margin(void **state)
     dem_render_body bodies[] = {{.shape = 0, .position = {0, 0, 0}, .orientation = {0.8, 0.6, 0, 0}, .scale = 1},
                                 {.shape = 1, .position = {-3, 1, 5}, .orientation = {0.6, 0, 0, 0.8}, .scale = 0.5},
                                 {.shape = 1, .position = {3, -1, -5}, .orientation = {0.6, 0, 0.8, 0}, .scale = 1.5}};
-    dem_render_scene scene = {shapes, 2, bodies, 3};
+    dem_render_scene scene = {.shapes = shapes, .shape_count = 2, .bodies = bodies, .body_count = 3};
     for (int turn = 0; turn < 4; turn++) {
         bool perspective = turn & 1;
         bodies[0].scale = turn & 2 ? 20 : 1;
@@ -283,7 +283,7 @@ static void thousands_of_bodies_share_a_shape(void **state)
                                       .orientation = {1, 0, 0, 0},
                                       .scale = 1,
                                       .colour = {0.5f, 0.3f, 0.2f}};
-    dem_render_scene scene = {&shape, 1, bodies, COUNT};
+    dem_render_scene scene = {.shapes = &shape, .shape_count = 1, .bodies = bodies, .body_count = COUNT};
     dem_camera camera = {{1, 2, -1}, {0, 0, 1}, 30, 0.05};
     dem_view view = dem_view_fit(&scene, &camera, 160, 120);
     dem_image image;

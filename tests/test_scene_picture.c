@@ -1,6 +1,7 @@
 #include "folder.h"
 #include "views.h"
 
+#include "out/palette.h"
 #include "out/scene_picture.h"
 
 enum { WIDTH = 240, HEIGHT = 200 };
@@ -46,8 +47,8 @@ static dem_image drawn(const dem_body_view *bodies, const dem_picture_options *o
     dem_ctx ctx = {.threads = threads};
     if (!DEM_EMBREE)
         skip();
-    check_ok(dem_scene_picture_render(&ctx, bodies, (const dem_clump *const *)clumps, VIEW_SHAPES, options, &image,
-                                      view, &error),
+    check_ok(dem_scene_picture_render(&ctx, bodies, (const dem_clump *const *)clumps, VIEW_SHAPES, options, NULL,
+                                      &image, view, &error),
              error);
     check(image.width == options->width && image.height == options->height);
     return image;
@@ -152,7 +153,7 @@ static void the_surface_or_the_spheres_are_drawn(void **state)
     dem_view view;
     dem_image surface = drawn(&p.view, &o, 1, &view);
     // the tetrahedron has corners in x, y, z from 0 on, the balls lie on both sides
-    dem_vec3 in_ball = v3_add(p.position[0], v3(-0.6, 0, 0));
+    dem_vec3 in_ball = v3_add(p.position[0], v3(-0.7, 0, 0.115));
     double x, y;
     dem_view_project(&view, in_ball, &x, &y);
     check(x < 0 || is_grey(pixel_of(&surface, &view, in_ball)));
@@ -266,6 +267,259 @@ static void the_picture_is_the_same_for_any_number_of_threads(void **state)
     dem_image_free(&three);
 }
 
+// ---- what surrounds the bodies, and what is left out
+
+static dem_picture_options plain_options(void)
+{
+    dem_picture_options o = options_of();
+    o.parallel = true;
+    o.elevation_deg = 0;
+    return o;
+}
+
+// seen along the ground there is no shadow: what is not white is the ball
+static void a_sphere_covers_its_pixels(void **state)
+{
+    (void)state;
+    pair p;
+    dem_view view;
+    make_pair(&p);
+    for (int zoomed = 0; zoomed < 2; zoomed++) {
+        dem_picture_options o = plain_options();
+        o.zoom = zoomed ? 1.7 : 1;
+        if (zoomed)
+            o.look_at = v3(1, 5, 1.1);
+        dem_image image = drawn(&p.view, &o, 1, &view);
+        double x, y, r = 0.5 * p.scale[1] / view.pixel;
+        dem_view_project(&view, p.position[1], &x, &y);
+        if (zoomed) {
+            check_near(x, WIDTH / 2.0, 1e-9);
+            check_near(y, HEIGHT / 2.0 + 0.1 / view.pixel, 1e-9);
+        }
+        for (int j = 0; j < HEIGHT; j++)
+            for (int i = WIDTH / 2; i < WIDTH; i++) {
+                double off = hypot(i + 0.5 - x, j + 0.5 - y) - r;
+                bool white = memcmp(image.pixels + 3 * (j * WIDTH + i), "\xff\xff\xff", 3) == 0;
+                if (fabs(off) > 1)
+                    check(white == (off > 0));
+            }
+        dem_image_free(&image);
+    }
+}
+
+static void zoom_enlarges_what_is_seen(void **state)
+{
+    (void)state;
+    pair p;
+    dem_view one, two;
+    make_pair(&p);
+    dem_picture_options o = options_of();
+    dem_image a = drawn(&p.view, &o, 1, &one);
+    o.zoom = 2;
+    dem_image b = drawn(&p.view, &o, 1, &two);
+    check_close(two.pixel, one.pixel / 2, 1e-12);
+    check_near(two.distance, one.distance, 0);
+    dem_image_free(&a);
+    dem_image_free(&b);
+}
+
+// the colour of a body where nothing shades it, as a direction: light only makes it brighter or darker
+static double hue_error(const uint8_t *got, dem_colour want)
+{
+    dem_colour c = dem_colour_of_srgb(got[0], got[1], got[2]);
+    double a[3] = {(double)c.r, (double)c.g, (double)c.b}, b[3] = {(double)want.r, (double)want.g, (double)want.b};
+    double ab = 0, aa = 0, bb = 0;
+    for (int k = 0; k < 3; k++)
+        ab += a[k] * b[k], aa += a[k] * a[k], bb += b[k] * b[k];
+    return 1 - ab / sqrt(aa * bb);
+}
+
+static void the_ends_of_the_range_have_the_colours_of_the_map(void **state)
+{
+    (void)state;
+    pair p;
+    dem_view view;
+    make_pair(&p);
+    for (dem_picture_map map = DEM_PICTURE_MAP_RAMP; map <= DEM_PICTURE_MAP_GREY; map++) {
+        const double values[2] = {-3, 7};
+        dem_palette palette;
+        dem_palette_make(map, &palette);
+        dem_picture_options o = options_of();
+        o.colour = DEM_PICTURE_VALUES;
+        o.values = values;
+        o.map = map;
+        o.low = -3;
+        o.high = 7;
+        dem_image image = drawn(&p.view, &o, 1, &view);
+        // the light is a little warm or cool
+        check(hue_error(pixel_of(&image, &view, p.position[0]), dem_palette_at(&palette, 0)) < 4e-3);
+        check(hue_error(pixel_of(&image, &view, p.position[1]), dem_palette_at(&palette, 1)) < 4e-3);
+        dem_image_free(&image);
+    }
+}
+
+static void ranges_are_chosen_from_the_values(void **state)
+{
+    (void)state;
+    dem_picture_options o = dem_picture_defaults();
+    dem_picture_span span = {.low = 0.0021, .high = 0.1987};
+    double low, high;
+    check(dem_picture_range(&o, &span, &low, &high) == DEM_PICTURE_MAP_RAMP);
+    check_near(low, 0, 1e-15);  // nearly round ends become round
+    check_near(high, 0.2, 1e-15);
+    span.low = 0.03;
+    dem_picture_range(&o, &span, &low, &high);
+    check(low == 0.03);
+    span.low = -0.1;
+    check(dem_picture_range(&o, &span, &low, &high) == DEM_PICTURE_MAP_DIVERGING);
+    check_near(low, -0.2, 1e-15);
+    o.low = -0.1;  // who asks for another range gets it
+    check(dem_picture_range(&o, &span, &low, &high) == DEM_PICTURE_MAP_RAMP);
+    check(low == -0.1);
+    o.map = DEM_PICTURE_MAP_WARM;
+    check(dem_picture_range(&o, &span, &low, &high) == DEM_PICTURE_MAP_WARM);
+    o.low = NAN;
+    dem_picture_range(&o, &(dem_picture_span){.low = INFINITY, .high = -INFINITY}, &low, &high);
+    check(low == 0 && high == 0);
+}
+
+static void hidden_bodies_are_not_there(void **state)
+{
+    (void)state;
+    pair p;
+    dem_view view, alone;
+    make_pair(&p);
+    dem_picture_options o = options_of();
+    const unsigned char hidden[2] = {1, 0};
+    dem_picture_span span = {0};
+    dem_error error;
+    const dem_clump *const *shapes = (const dem_clump *const *)clumps;
+    check_ok(dem_scene_picture_measure(&p.view, shapes, VIEW_SHAPES, &o, &span, &error), error);
+    o.hidden = hidden;
+    dem_image own = drawn(&p.view, &o, 1, &alone), image;
+    check_vec(alone.centre, p.position[1], 0.2);  // the camera looks at what is left
+    dem_image_free(&own);
+    if (!DEM_EMBREE)
+        skip();
+    check_ok(dem_scene_picture_render(NULL, &p.view, shapes, VIEW_SHAPES, &o, &span, &image, &view, &error), error);
+    check(is_grey(pixel_of(&image, &view, p.position[0])));
+    check(!is_grey(pixel_of(&image, &view, p.position[1])));
+    dem_image_free(&image);
+}
+
+static void a_sequence_has_one_camera_and_range(void **state)
+{
+    (void)state;
+    enum { FRAMES = 3 };
+    pair p;
+    dem_error error;
+    dem_picture_span span = {0};
+    dem_view first, view;
+    const dem_clump *const *shapes = (const dem_clump *const *)clumps;
+    make_pair(&p);
+    dem_picture_options o = options_of();
+    o.colour = DEM_PICTURE_SPEED;
+    for (int i = 0; i < FRAMES; i++) {
+        p.position[0].x = -1.5 - 2 * i;
+        p.velocity[0].z = i;
+        o.time = 0.1 * i;
+        check_ok(dem_scene_picture_measure(&p.view, shapes, VIEW_SHAPES, &o, &span, &error), error);
+    }
+    check(span.low == 0 && span.high == 5);
+    check_near(span.end, 0.2, 1e-15);
+    if (!DEM_EMBREE)
+        skip();
+    uint8_t right[3];
+    for (int i = 0; i < FRAMES; i++) {
+        dem_image image;
+        p.position[0].x = -1.5 - 2 * i;
+        p.velocity[0].z = i;
+        check_ok(dem_scene_picture_render(NULL, &p.view, shapes, VIEW_SHAPES, &o, &span, &image, &view, &error), error);
+        if (i == 0) {
+            first = view;
+            memcpy(right, pixel_of(&image, &view, p.position[1]), 3);
+        }
+        check(memcmp(&view, &first, sizeof view) == 0);
+        check(!is_grey(pixel_of(&image, &view, p.position[0])));  // always in the picture
+        assert_memory_equal(pixel_of(&image, &view, p.position[1]), right, 3);
+        dem_image_free(&image);
+    }
+}
+
+static void the_camera_of_a_sequence_holds_all_of_it_tightly(void **state)
+{
+    (void)state;
+    pair p;
+    dem_error error;
+    make_pair(&p);
+    const dem_clump *const *shapes = (const dem_clump *const *)clumps;
+    dem_picture_options o = options_of();
+    // the two bodies one after the other are seen from where both are seen at once
+    dem_picture_span both = {0}, each = {0};
+    check_ok(dem_scene_picture_measure(&p.view, shapes, VIEW_SHAPES, &o, &both, &error), error);
+    for (int i = 0; i < 2; i++) {
+        const unsigned char hidden[2] = {i == 0, i == 1};
+        o.hidden = hidden;
+        check_ok(dem_scene_picture_measure(&p.view, shapes, VIEW_SHAPES, &o, &each, &error), error);
+    }
+    dem_view a = dem_fit_end(&both.fit), b = dem_fit_end(&each.fit);
+    check_vec(b.centre, a.centre, 1e-12);
+    check_close(b.pixel, a.pixel, 1e-12);
+    check_close(b.distance, a.distance, 1e-12);
+}
+
+static void the_background_is_as_asked(void **state)
+{
+    (void)state;
+    pair p;
+    dem_view view;
+    make_pair(&p);
+    dem_picture_options o = options_of();
+    o.labels = true;
+    memcpy(o.background, (uint8_t[]){32, 48, 64}, 3);
+    dem_image image = drawn(&p.view, &o, 1, &view);
+    static const int corners[4][2] = {{0, 0}, {WIDTH - 1, 0}, {0, HEIGHT - 1}, {WIDTH - 1, HEIGHT - 1}};
+    for (int k = 0; k < 4; k++)
+        assert_memory_equal(image.pixels + 3 * (corners[k][1] * WIDTH + corners[k][0]), o.background, 3);
+    dem_image_free(&image);
+    check(dem_ink_on((uint8_t[]){255, 255, 255}).r < 50 && dem_ink_on((uint8_t[]){20, 20, 80}).r > 200);
+}
+
+static void labels_stand_beside_the_bodies(void **state)
+{
+    (void)state;
+    pair p;
+    dem_view view;
+    make_pair(&p);
+    dem_picture_options o = plain_options();
+    o.colour = DEM_PICTURE_SPEED;
+    o.label_size = 9;
+    dem_image bare = drawn(&p.view, &o, 1, &view);
+    check(view.width == WIDTH && view.height == HEIGHT);
+    dem_image_free(&bare);
+    o.labels = true;
+    o.time = 0.5;
+    dem_image image = drawn(&p.view, &o, 1, &view);
+    check(view.width < WIDTH - 30 && view.height < HEIGHT - 20);
+    // the scale bar is ink of the length that it says
+    int y = HEIGHT - 1 - 16, length = 0, from = 0;
+    for (int x = 0; x < view.width; x++)
+        if (image.pixels[3 * (y * WIDTH + x)] < 60) {
+            from = length ? from : x;
+            length += x == from + length;
+        }
+    check_near(length * view.pixel, 0.5, view.pixel);
+    // a colour bar to the right, dark below and yellow above
+    int blue = 0, yellow = 0;
+    for (int j = 0; j < HEIGHT; j++) {
+        const uint8_t *pixel = image.pixels + 3 * (j * WIDTH + view.width + 18);
+        blue += pixel[2] > pixel[0] + 40 && j > HEIGHT / 3;
+        yellow += pixel[0] > pixel[2] + 40 && j < HEIGHT / 2;
+    }
+    check(blue > 10 && yellow > 10);
+    dem_image_free(&image);
+}
+
 static void nothing_is_a_picture_too(void **state)
 {
     (void)state;
@@ -326,6 +580,15 @@ int main(void)
         cmocka_unit_test(bodies_hide_the_glass_behind_them),
         cmocka_unit_test(the_edges_of_glass_are_lines),
         cmocka_unit_test(the_picture_is_the_same_for_any_number_of_threads),
+        cmocka_unit_test(a_sphere_covers_its_pixels),
+        cmocka_unit_test(zoom_enlarges_what_is_seen),
+        cmocka_unit_test(the_ends_of_the_range_have_the_colours_of_the_map),
+        cmocka_unit_test(ranges_are_chosen_from_the_values),
+        cmocka_unit_test(hidden_bodies_are_not_there),
+        cmocka_unit_test(a_sequence_has_one_camera_and_range),
+        cmocka_unit_test(the_camera_of_a_sequence_holds_all_of_it_tightly),
+        cmocka_unit_test(the_background_is_as_asked),
+        cmocka_unit_test(labels_stand_beside_the_bodies),
         cmocka_unit_test(nothing_is_a_picture_too),
         cmocka_unit_test(the_picture_is_a_png_file),
     };

@@ -72,4 +72,8 @@ void job_results_slim(job_results *results);
 void job_results_move(job_results *to, job_results *from);
 void job_results_release(job_results *results);
 
+/// Writes a clump that is there already as `options` ask for; `mesh` (may be NULL) is for the formats that show it.
+dem_status job_write(const dem_ctx *ctx, const job_options *options, job_result *result, const dem_mesh *mesh,
+                     dem_error *error);
+
 #endif

@@ -22,11 +22,15 @@ static const char *number(char text[32], double value)
     return dem_format_double(text, 32, value, fabs(value) >= 1e4 && fabs(value) < 1e7 ? 7 : 5);
 }
 
-static void compare_row(dem_buffer *out, const char *name, double mesh, double balls)
+void report_compare(dem_buffer *out, const char *name, double mesh, double balls)
 {
     char a[32], b[32];
     dem_buffer_print(out, "  %-18s %15s %18s", name, number(a, mesh), number(b, balls));
     double difference = 100 * (balls - mesh) / mesh;
+    if (isnan(difference)) {
+        dem_buffer_text(out, "\n");
+        return;
+    }
     dem_buffer_print(out, fabs(difference) < 1e-4 && difference != 0 ? "    %+.1e %%\n" : "    %+.4f %%\n", difference);
 }
 
@@ -66,11 +70,11 @@ static void text_mass(dem_buffer *out, const job_result *r, const dem_clump_def 
     dem_buffer_print(out, "  %-18s %15s %18s    difference\n", "", "mesh", "union of spheres");
     snprintf(name, sizeof name, "volume [%s^3]", unit);
     double cube = factor * factor * factor;
-    compare_row(out, name, r->solid.volume * cube, c->union_volume * cube);
-    compare_row(out, "mass   [kg]", r->solid.volume * c->density, c->union_volume * c->density);
+    report_compare(out, name, r->solid.volume * cube, c->union_volume * cube);
+    report_compare(out, "mass   [kg]", r->solid.volume * c->density, c->union_volume * c->density);
     for (int i = 0; i < 3; i++) {
         snprintf(name, sizeof name, "%s     [kg m^2]", axes[i]);
-        compare_row(out, name, r->solid.principal[i] * c->density, c->union_inertia[i]);
+        report_compare(out, name, r->solid.principal[i] * c->density, c->union_inertia[i]);
     }
     dem_buffer_print(out, "  the clump has the mass, centre and inertia of the %s; density ",
                      c->mass_from == DEM_MASS_FROM_UNION ? "union" : "mesh");
@@ -157,12 +161,21 @@ static void put_figures(dem_json_writer *w, const figure *figures, size_t count)
         dem_json_put_number(w, figures[i].name, figures[i].value);
 }
 
-static void put_texts(dem_json_writer *w, const char *key, char **texts, size_t count)
+void report_put_texts(dem_json_writer *w, const char *key, char **texts, size_t count)
 {
     dem_json_open_array(w, key, false);
     for (size_t i = 0; i < count; i++)
         dem_json_put_string(w, NULL, texts[i]);
     dem_json_close(w, ']');
+}
+
+void report_put_error(dem_json_writer *w, const dem_error *error)
+{
+    dem_json_open_object(w, "error");
+    dem_json_put_string(w, "file", error->file);
+    dem_json_put_whole(w, "line", error->line);
+    dem_json_put_string(w, "text", error->text);
+    dem_json_close(w, '}');
 }
 
 static void json_clump(dem_json_writer *w, const job_result *r)
@@ -203,13 +216,8 @@ static void json_result(dem_json_writer *w, const job_result *r)
         dem_json_put_whole(w, "voxels", (int64_t)r->label.voxels);
         dem_json_put_number(w, "voxel_volume", r->voxel_volume);
     }
-    if (r->status != DEM_OK) {
-        dem_json_open_object(w, "error");
-        dem_json_put_string(w, "file", r->error.file);
-        dem_json_put_whole(w, "line", r->error.line);
-        dem_json_put_string(w, "text", r->error.text);
-        dem_json_close(w, '}');
-    }
+    if (r->status != DEM_OK)
+        report_put_error(w, &r->error);
     if (r->clump)
         json_clump(w, r);
     dem_json_open_object(w, "mesh");
@@ -223,8 +231,8 @@ static void json_result(dem_json_writer *w, const job_result *r)
     dem_json_put_number(w, "pack", r->pack.seconds);
     dem_json_put_number(w, "total", r->seconds_total);
     dem_json_close(w, '}');
-    put_texts(w, "warnings", r->warnings, r->warning_count);
-    put_texts(w, "outputs", r->outputs, r->output_count);
+    report_put_texts(w, "warnings", r->warnings, r->warning_count);
+    report_put_texts(w, "outputs", r->outputs, r->output_count);
     dem_json_close(w, '}');
 }
 

@@ -12,6 +12,7 @@
 #include "clump/pack.h"
 #include "clump_batch.h"
 #include "clump_inputs.h"
+#include "clump_convert.h"
 #include "clump_job.h"
 #include "clump_labels.h"
 #include "clump_report.h"
@@ -45,6 +46,7 @@ static const char epilogue[] = "Examples:\n"
                                "  dem-clump grain.obj -o - --format xyzr       spheres on standard output\n"
                                "  dem-clump scans/ -o clumps/ -o all.csv -o all.png      a folder; the table, a picture of all\n"
                                "  dem-clump scan.nrrd --unit mm -o clumps/     each label of a CT image\n"
+                               "  dem-clump convert rock.mol -o rock.json      a clump of another program\n"
                                "Exit status: 0 done, 1 failed, 2 wrong usage, 3 bad input, 4 cannot write, 130 interrupted.";
 
 // the choices as the library counts them
@@ -253,8 +255,18 @@ static int run_operands(const cli_tool *tool, const arguments *a, const cli_text
     return status;
 }
 
+// what stands before the options and has options of its own
+typedef struct subcommand {
+    const char *name;
+    int (*run)(int argc, char **argv);
+} subcommand;
+static const subcommand subcommands[] = {{"convert", clump_convert}};
+
 int main(int argc, char **argv)
 {
+    for (size_t i = 0; argc > 1 && i < sizeof subcommands / sizeof *subcommands; i++)
+        if (strcmp(argv[1], subcommands[i].name) == 0)
+            return subcommands[i].run(argc - 1, argv + 1);
     arguments a = default_arguments();
     const cli_option options[] = {
         {.help = "Spheres"},

@@ -7,12 +7,13 @@
 #include "base/text.h"
 #include "math/sum.h"
 #include "math/vec.h"
+#include "mesh/mass.h"
+#include "mesh/roughen.h"
 
 // a new kind is a file with its record, and its line here
 static const dem_grain_kind *const kinds[] = {
-    &dem_grain_harmonics,
-    &dem_grain_facets,
-    &dem_grain_ellipsoid,
+    &dem_grain_harmonics,    &dem_grain_facets,     &dem_grain_ellipsoid,
+    &dem_grain_superquadric, &dem_grain_polyhedron, &dem_grain_rock,
 };
 enum { KIND_COUNT = sizeof kinds / sizeof *kinds, DENT_STREAM = 1000, CANDIDATES = 20 };
 
@@ -69,10 +70,14 @@ static dem_status check_options(const dem_grain_options *o, dem_error *error)
     DEM_TRY(check_range("dents", (double)o->dents, 0, DEM_GRAIN_MAX_DENTS, true, error));
     DEM_TRY(check_range("dent-depth", o->dent_depth, 0, DEM_GRAIN_MAX_DEPTH, false, error));
     DEM_TRY(check_range("dent-width", o->dent_width_deg, DEM_GRAIN_MIN_WIDTH, 90, false, error));
+    if (o->roughness != 0) {
+        DEM_TRY(check_range("roughness-scale", o->roughness_scale, 1e-9, 1e9, false, error));
+        DEM_TRY(check_range("roughness", o->roughness, 0, o->roughness_scale / 2, false, error));
+    }
     return o->size ? check_range("size", o->size, 1e-9, 1e9, false, error) : DEM_OK;
 }
 
-static dem_status fill_values(const dem_grain_kind *kind, const double *given, double *values, dem_error *error)
+dem_status dem_grain_values(const dem_grain_kind *kind, const double *given, double *values, dem_error *error)
 {
     DEM_ASSERT(kind->param_count <= DEM_GRAIN_PARAMS);
     for (size_t i = 0; i < kind->param_count; i++) {
@@ -147,33 +152,87 @@ static dem_status star_volume(const dem_mesh *mesh, const char *kind, double *vo
     return DEM_OK;
 }
 
+// stretched, dented, and brought to its size; smooth
+static dem_status make_smooth(const dem_ctx *ctx, const dem_grain_kind *kind, const dem_grain_options *options,
+                              const dem_grain_request *request, dem_mesh *mesh, dem_error *error)
+{
+    double volume = 0, e = options->elongation;
+    dem_status status = kind->make(ctx, request, mesh, error);
+    if (status == DEM_OK && (e < 1 || options->flatness < 1))
+        stretch(mesh, v3(1, e, e * options->flatness));
+    if (status == DEM_OK && options->dents)
+        press_dents(mesh, options);
+    if (status == DEM_OK)
+        status = star_volume(mesh, kind->name, &volume, error);
+    double size = options->size > 0 || dem_grain_kind_has_size(kind) ? options->size : OWN_SIZE;
+    if (status == DEM_OK && size > 0)
+        dem_mesh_scale(mesh, size / cbrt(6 * volume / DEM_PI));
+    if (status != DEM_OK)
+        dem_mesh_free(mesh);
+    return status;
+}
+
+// makes the smooth grain again where its triangles are too large for the waves
+static dem_status refine(const dem_ctx *ctx, const dem_grain_kind *kind, const dem_grain_options *o,
+                         dem_grain_request *request, dem_mesh *mesh, dem_error *error)
+{
+    for (int attempt = 0; attempt < 3; attempt++) {
+        double needed = dem_mesh_triangles_for(mesh, o->roughness_scale), has = (double)mesh->triangle_count;
+        if (needed <= has)
+            return DEM_OK;
+        double triangles = 1.02 * needed / has * (double)request->triangles;
+        if (triangles > DEM_GRAIN_MAX_TRIANGLES) {
+            dem_mesh_free(mesh);
+            return dem_fail(error, DEM_USAGE,
+                            "roughness of that scale takes %.2g triangles; raise --roughness-scale until %d will do",
+                            triangles, DEM_GRAIN_MAX_TRIANGLES);
+        }
+        request->triangles = (size_t)triangles + 1;
+        dem_mesh_free(mesh);
+        DEM_TRY(make_smooth(ctx, kind, o, request, mesh, error));
+    }
+    return DEM_OK;
+}
+
+static dem_status roughen(const dem_ctx *ctx, const dem_grain_kind *kind, const dem_grain_options *o,
+                          dem_grain_request *request, dem_mesh *mesh, dem_error *error)
+{
+    char text[2][32];
+    double diameter = cbrt(6 * dem_mesh_solid(mesh).volume / DEM_PI), reached;
+    if (o->roughness_scale > diameter) {
+        dem_mesh_free(mesh);
+        return dem_fail(error, DEM_USAGE, "roughness-scale must be less than the grain, %s m across, not %s m",
+                        dem_format_double(text[0], 32, diameter, 3),
+                        dem_format_double(text[1], 32, o->roughness_scale, 3));
+    }
+    DEM_TRY(refine(ctx, kind, o, request, mesh, error));
+    if (request->triangles > o->triangles)
+        dem_log(ctx, DEM_LOG_WARNING, "%zu triangles cannot carry such fine roughness; it has %zu", o->triangles,
+                mesh->triangle_count);
+    dem_status status = dem_mesh_roughen(ctx, mesh, o->roughness, o->roughness_scale, request->seed, &reached, error);
+    if (status != DEM_OK) {
+        dem_mesh_free(mesh);
+        return status;
+    }
+    if (reached < o->roughness)
+        dem_log(ctx, DEM_LOG_WARNING, "roughness lowered from %s m to %s m, with more the surface would cross itself",
+                dem_format_double(text[0], 32, o->roughness, 4), dem_format_double(text[1], 32, reached, 4));
+    // the waves change the volume a little
+    if (o->size > 0 || !dem_grain_kind_has_size(kind))
+        dem_mesh_scale(mesh, diameter / cbrt(6 * dem_mesh_solid(mesh).volume / DEM_PI));
+    return DEM_OK;
+}
+
 dem_status dem_grain_make(const dem_ctx *ctx, const dem_grain_options *options, dem_mesh *mesh, dem_error *error)
 {
     *mesh = (dem_mesh){0};
     const dem_grain_kind *kind = dem_grain_kind_find(options->kind);
     if (!kind)
         return dem_fail(error, DEM_USAGE, "there is no kind of grain named '%s'; see dem-grain --list", options->kind);
-    double values[DEM_GRAIN_PARAMS], volume = 0;
+    double values[DEM_GRAIN_PARAMS];
     DEM_TRY(check_options(options, error));
-    DEM_TRY(fill_values(kind, options->values, values, error));
+    DEM_TRY(dem_grain_values(kind, options->values, values, error));
     dem_grain_request request = {values, options->seed, options->triangles};
-    dem_status status = kind->make(ctx, &request, mesh, error);
-    if (status != DEM_OK)
-        goto done;
-    double e = options->elongation;
-    if (e < 1 || options->flatness < 1)
-        stretch(mesh, v3(1, e, e * options->flatness));
-    if (options->dents)
-        press_dents(mesh, options);
-    if ((status = star_volume(mesh, kind->name, &volume, error)) != DEM_OK)
-        goto done;
-    double size = options->size > 0 || dem_grain_kind_has_size(kind) ? options->size : OWN_SIZE;
-    if (size > 0) {
-        double factor = size / cbrt(6 * volume / DEM_PI);
-        stretch(mesh, v3(factor, factor, factor));
-    }
-done:
-    if (status != DEM_OK)
-        dem_mesh_free(mesh);
-    return status;
+    DEM_TRY(make_smooth(ctx, kind, options, &request, mesh, error));
+    return options->roughness > 0 ? roughen(ctx, kind, options, &request, mesh, error) : DEM_OK;
 }

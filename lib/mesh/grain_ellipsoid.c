@@ -8,13 +8,20 @@ static const dem_grain_param params[] = {
     {"shortest", 1.2e-3, 1e-9, 1e9, "m", "axis along z"},
 };
 
+static const double LONGEST = 2500;  // most that axes may differ by
+
 static dem_status make(const dem_ctx *ctx, const dem_grain_request *request, dem_mesh *mesh, dem_error *error)
 {
     (void)ctx;
+    const double *v = request->values;
+    double longest = fmax(v[0], fmax(v[1], v[2])), shortest = fmin(v[0], fmin(v[1], v[2]));
+    if (longest > LONGEST * shortest)
+        return dem_fail(error, DEM_USAGE, "the axes differ by a factor of %.3g; at most %.0f is allowed",
+                        longest / shortest, LONGEST);
     DEM_TRY(dem_icosphere(dem_icosphere_frequency(request->triangles), mesh, error));
     for (size_t i = 0; i < mesh->vertex_count; i++) {
-        dem_vec3 *v = &mesh->vertices[i];
-        *v = v3(v->x * request->values[0] / 2, v->y * request->values[1] / 2, v->z * request->values[2] / 2);
+        dem_vec3 *p = &mesh->vertices[i];
+        *p = v3(p->x * v[0] / 2, p->y * v[1] / 2, p->z * v[2] / 2);
     }
     return DEM_OK;
 }

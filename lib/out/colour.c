@@ -33,10 +33,20 @@ dem_colour dem_colour_of_number(uint64_t number)
     return dem_colour_lch(lightness, one[1], hue);
 }
 
-dem_colour dem_colour_ramp(double part)
+uint8_t dem_colour_srgb(float linear)
 {
-    if (isnan(part))
-        return dem_colour_lch(0.6, 0, 0);
-    double t = part < 0 ? 0 : part > 1 ? 1 : part;
-    return dem_colour_lch(0.45 + 0.45 * t, 0.10 + 0.04 * sin(DEM_PI * t), 0.75 - 0.46 * t);
+    float x = linear < 0 ? 0 : linear > 1 ? 1 : linear;
+    x = x <= 0.0031308f ? 12.92f * x : 1.055f * powf(x, 1 / 2.4f) - 0.055f;
+    return (uint8_t)(255 * x + 0.5f);
+}
+
+dem_colour dem_colour_of_srgb(uint8_t r, uint8_t g, uint8_t b)
+{
+    const uint8_t bytes[3] = {r, g, b};
+    float light[3];
+    for (int k = 0; k < 3; k++) {
+        float x = (float)bytes[k] / 255;
+        light[k] = x <= 0.04045f ? x / 12.92f : powf((x + 0.055f) / 1.055f, 2.4f);
+    }
+    return (dem_colour){light[0], light[1], light[2]};
 }

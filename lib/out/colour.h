@@ -15,8 +15,8 @@ dem_colour dem_colour_lch(double lightness, double chroma, double hue);
 /// One of a family of earthy colours, always the same for a number.
 dem_colour dem_colour_of_number(uint64_t number);
 
-/// From dark blue over green to light yellow, evenly in what the eye sees, also without colour; `part` is held within
-/// 0..1. Grey where it is not a number.
-dem_colour dem_colour_ramp(double part);
+/// Linear light as an sRGB byte, and back.
+uint8_t dem_colour_srgb(float linear);
+dem_colour dem_colour_of_srgb(uint8_t r, uint8_t g, uint8_t b);
 
 #endif

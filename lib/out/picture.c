@@ -109,37 +109,101 @@ static dem_status colour_balls(const dem_ball *balls, size_t count, dem_colour *
     return hues ? DEM_OK : dem_fail_memory(error);
 }
 
-dem_status dem_picture_render(const dem_ctx *ctx, const dem_mesh *mesh, const dem_ball *balls, size_t count, int width,
-                              int height, dem_image *image, dem_view *left, dem_error *error)
+static bool has_mesh(const dem_grain_picture *g)
 {
-    bool pair = mesh->triangle_count > 0;
+    return g->mesh && g->mesh->triangle_count > 0;
+}
+
+// a mesh, balls or both in one place
+typedef struct model {
+    dem_render_shape shapes[2];
+    dem_render_body bodies[2];
+    dem_render_scene scene;
+} model;
+
+static void fill_model(const dem_grain_picture *g, const dem_colour *colours, model *m)
+{
+    size_t n = 0;
+    if (g->count) {
+        m->shapes[n] = (dem_render_shape){.balls = g->balls, .ball_count = g->count, .ball_colours = colours};
+        m->bodies[n++] = (dem_render_body){.shape = 0, .orientation = {1, 0, 0, 0}, .scale = 1};
+    }
+    if (has_mesh(g)) {
+        m->shapes[n] = (dem_render_shape){.mesh = g->mesh};
+        m->bodies[n] =
+            (dem_render_body){.shape = (uint32_t)n, .orientation = {1, 0, 0, 0}, .scale = 1, .colour = STONE};
+        n++;
+    }
+    m->scene = (dem_render_scene){m->shapes, n, m->bodies, n, g->background, g->samples};
+}
+
+static dem_view view_of(const dem_grain_picture *g, const model *m, int width, int height)
+{
+    dem_camera camera = g->camera
+                            ? *g->camera
+                            : choose_camera(has_mesh(g) ? surface_spread(g->mesh) : balls_spread(g->balls, g->count));
+    camera.margin = MARGIN;
+    camera.field_deg = g->field_deg;
+    dem_view view = dem_view_fit(&m->scene, &camera, m->scene.body_count == 2 ? width / 2 : width, height);
+    if (g->look_at) {
+        view.radius += v3_distance(view.centre, *g->look_at);
+        view.centre = *g->look_at;
+    }
+    view.pixel = fmax(view.pixel, g->pixel);
+    view.pixel /= g->zoom > 0 ? g->zoom : 1;
+    return view;
+}
+
+static dem_status check_grain(const dem_grain_picture *g, dem_error *error)
+{
+    return g->count || has_mesh(g) ? DEM_OK : dem_fail(error, DEM_USAGE, "there are no spheres to draw");
+}
+
+dem_status dem_grain_view(const dem_grain_picture *g, int width, int height, dem_view *view, dem_error *error)
+{
+    model m;
+    DEM_TRY(check_grain(g, error));
+    fill_model(g, NULL, &m);
+    *view = view_of(g, &m, width, height);
+    return DEM_OK;
+}
+
+dem_status dem_grain_render(const dem_ctx *ctx, const dem_grain_picture *g, int width, int height, dem_image *image,
+                            dem_view *left, dem_error *error)
+{
+    model m;
     *image = (dem_image){0};
-    if (count == 0)
-        return dem_fail(error, DEM_USAGE, "there are no spheres to draw");
-    dem_colour *colours = dem_alloc(count, sizeof *colours);
+    DEM_TRY(check_grain(g, error));
+    dem_colour *colours = dem_alloc(g->count, sizeof *colours);
     if (!colours)
         return dem_fail_memory(error);
-    dem_render_shape shapes[2] = {{.balls = balls, .ball_count = count, .ball_colours = colours}, {.mesh = mesh}};
-    dem_render_body bodies[2] = {{.shape = 0, .orientation = {1, 0, 0, 0}, .scale = 1},
-                                 {.shape = 1, .orientation = {1, 0, 0, 0}, .scale = 1, .colour = STONE}};
-    dem_render_scene scene = {shapes, pair ? 2 : 1, bodies, pair ? 2 : 1};
-    dem_camera camera = choose_camera(pair ? surface_spread(mesh) : balls_spread(balls, count));
+    fill_model(g, colours, &m);
     // half of the picture holds both in one place; then they move apart by its breadth
-    dem_view view = dem_view_fit(&scene, &camera, pair ? width / 2 : width, height);
+    dem_view view = view_of(g, &m, width, height);
     if (left)
         *left = view;
-    if (pair) {
+    if (m.scene.body_count == 2) {
         double half = view.width * view.pixel / 2;
-        bodies[0].position = v3_scale(view.right, half);
-        bodies[1].position = v3_scale(view.right, -half);
+        m.bodies[0].position = v3_scale(view.right, half);
+        m.bodies[1].position = v3_scale(view.right, -half);
         view.width = width;
         view.radius += half;
     }
-    dem_status status = colour_balls(balls, count, colours, error);
+    dem_status status = g->count ? colour_balls(g->balls, g->count, colours, error) : DEM_OK;
     if (status == DEM_OK)
-        status = dem_render(ctx, &scene, &view, image, error);
+        status = dem_render(ctx, &m.scene, &view, image, error);
     free(colours);
     return status;
+}
+
+dem_status dem_picture_render(const dem_ctx *ctx, const dem_mesh *mesh, const dem_ball *balls, size_t count, int width,
+                              int height, dem_image *image, dem_view *left, dem_error *error)
+{
+    const dem_grain_picture grain = {.mesh = mesh, .balls = balls, .count = count};
+    *image = (dem_image){0};
+    if (count == 0)
+        return dem_fail(error, DEM_USAGE, "there are no spheres to draw");
+    return dem_grain_render(ctx, &grain, width, height, image, left, error);
 }
 
 dem_status dem_picture_draw(const dem_ctx *ctx, const dem_mesh *mesh, const dem_ball *balls, size_t count,

@@ -4,6 +4,7 @@
 #include <setjmp.h>
 #include <stdlib.h>
 
+#include "base/file.h"
 #include "base/memory.h"
 
 dem_status dem_image_create(int width, int height, dem_image *image, dem_error *error)
@@ -61,4 +62,15 @@ dem_status dem_png_encode(const dem_image *image, dem_buffer *out, dem_error *er
     png_write_end(png, info);
     png_destroy_write_struct(&png, &info);
     return DEM_OK;
+}
+
+dem_status dem_png_write(dem_image *image, const char *path, dem_error *error)
+{
+    dem_buffer png = {0};
+    dem_status status = dem_png_encode(image, &png, error);
+    dem_image_free(image);
+    if (status == DEM_OK)
+        return dem_file_write_buffer(path, &png, error);
+    dem_buffer_release(&png);
+    return status;
 }

@@ -15,5 +15,7 @@ void dem_image_free(dem_image *image);
 
 /// Appends the image as a PNG file.
 dem_status dem_png_encode(const dem_image *image, dem_buffer *out, dem_error *error);
+/// Writes it as a file ("-" is standard output) and frees it either way.
+dem_status dem_png_write(dem_image *image, const char *path, dem_error *error);
 
 #endif

@@ -22,9 +22,10 @@ enum {
     BORDER_LOW = 1,  // pixels about a tile that its averages take in
     BORDER_HIGH = 2,
     EDGE = TILE + BORDER_LOW + BORDER_HIGH,
-    PATCHES = 4,        // surfaces in one pixel
-    MORE_SAMPLES = 15,  // of a pixel at an edge
-    STEP = 4,           // pixels between points of the ground's lattice
+    PATCHES = 4,      // surfaces in one pixel
+    SAMPLES = 16,     // of a pixel at an edge, if nothing is asked for
+    FEW_SAMPLES = 5,  // if these all see the same, the edge is beside the pixel
+    STEP = 4,         // pixels between points of the ground's lattice
     NODES = TILE / STEP + 3,
 };
 
@@ -68,14 +69,16 @@ static void add_veil(cell *p, dem_veil veil)
     p->veil.light.b += veil.light.b;
 }
 
-static void take_sample(const dem_stage *s, double x, double y, cell *p)
+// true: it sees what the first one of the pixel sees
+static bool take_sample(const dem_stage *s, double x, double y, cell *p)
 {
     dem_spot seen;
     bool any = dem_stage_look(s, x, y, &seen);
-    add_veil(p, dem_stage_veil(s, x, y, any ? &seen : NULL));
+    dem_veil veil = dem_stage_veil(s, x, y, any ? &seen : NULL);
+    add_veil(p, veil);
     p->weight++;
     if (!any)
-        return;
+        return p->count == 0 && veil.key == p->veil.key;
     int k = 0;
     while (k < p->count && !same_surface(s, &p->patches[k].spot, &seen))
         k++;
@@ -84,6 +87,19 @@ static void take_sample(const dem_stage *s, double x, double y, cell *p)
     else if (k == p->count)
         p->patches[p->count++] = (patch){.spot = seen};
     p->patches[k].weight++;
+    return p->patches[0].weight == p->weight && veil.key == p->veil.key;
+}
+
+// many samples of a pixel near an edge; a few where the edge seems to miss it
+static void take_more(const dem_stage *s, double left, double top, cell *p)
+{
+    size_t most = (size_t)(s->scene->samples > 0 ? s->scene->samples : SAMPLES) - 1;
+    bool same = true;
+    for (size_t i = 0; i < most && !(same && i == FEW_SAMPLES); i++) {
+        double u, v;
+        dem_even_point(i, &u, &v);
+        same &= take_sample(s, left + u, top + v, p);
+    }
 }
 
 static bool same_sight(const dem_stage *s, const cell *a, const cell *b)
@@ -110,11 +126,8 @@ static void take_samples(const dem_stage *s, tile *t)
         }
     for (int y = 1; y < height - 1; y++)
         for (int x = 1; x < width - 1; x++)
-            for (size_t i = 0; t->edges[y][x] && i < MORE_SAMPLES; i++) {
-                double u, v;
-                dem_even_point(i, &u, &v);
-                take_sample(s, left + x + u, top + y + v, &t->cells[y][x]);
-            }
+            if (t->edges[y][x])
+                take_more(s, left + x, top + y, &t->cells[y][x]);
 }
 
 static void light_patches(const dem_stage *s, tile *t)
@@ -179,24 +192,18 @@ static float ground_light(const dem_stage *s, tile *t, int x, int y)
     return sum;
 }
 
-static uint8_t to_srgb(float linear)
-{
-    float x = linear < 0 ? 0 : linear > 1 ? 1 : linear;
-    x = x <= 0.0031308f ? 12.92f * x : 1.055f * powf(x, 1 / 2.4f) - 0.055f;
-    return (uint8_t)(255 * x + 0.5f);
-}
-
 // (x, y) in the tile
 static void finish_pixel(const dem_stage *s, tile *t, int x, int y, uint8_t *rgb)
 {
     const cell *c = &t->cells[y + BORDER_LOW][x + BORDER_LOW];
+    const dem_colour white = {1, 1, 1}, back = s->scene->background ? *s->scene->background : white;
     float sum[3] = {0}, sky = (float)c->weight;
     for (int k = 0; k < c->count; k++) {
         const patch *p = &c->patches[k];
-        dem_colour colour = {1, 1, 1}, light;
+        dem_colour colour = back, light;
         if (p->spot.body == STAGE_GROUND) {
-            float white = ground_light(s, t, x, y);
-            light = (dem_colour){white, white, white};
+            float bright = ground_light(s, t, x, y);
+            light = (dem_colour){bright, bright, bright};
         } else {
             colour = albedo(s, &p->spot);
             light = average_light(s, t, x + BORDER_LOW, y + BORDER_LOW, &p->spot);
@@ -208,8 +215,9 @@ static void finish_pixel(const dem_stage *s, tile *t, int x, int y, uint8_t *rgb
         sky -= w;
     }
     const float veil[3] = {c->veil.light.r, c->veil.light.g, c->veil.light.b}, all = (float)c->weight;
-    for (int k = 0; k < 3; k++)  // the sky behind it all is white
-        rgb[k] = to_srgb(((sum[k] + sky) / all * c->veil.through + veil[k]) / all);
+    const float behind[3] = {back.r, back.g, back.b};
+    for (int k = 0; k < 3; k++)
+        rgb[k] = dem_colour_srgb(((sum[k] + sky * behind[k]) / all * c->veil.through + veil[k]) / all);
 }
 
 static void render_tile(const dem_stage *s, tile *t, dem_image *image)

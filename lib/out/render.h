@@ -31,6 +31,8 @@ typedef struct dem_render_scene {
     size_t shape_count;
     const dem_render_body *bodies;
     size_t body_count;
+    const dem_colour *background;  ///< of sky and ground; NULL: white
+    int samples;                   ///< of a pixel at an edge; 0: as many as look smooth
 } dem_render_scene;
 
 /// A camera that finds its own place: everything is in the picture, `margin` of its smaller side left free.
@@ -40,6 +42,9 @@ typedef struct dem_camera {
     double field_deg;  ///< angle of view across the smaller side of the picture; 0: parallel rays
     double margin;     ///< [-]
 } dem_camera;
+
+/// One that looks from an azimuth about `up`, from x (where that is not up), and an elevation above the ground.
+dem_camera dem_camera_around(dem_vec3 up, double azimuth_deg, double elevation_deg, double field_deg, double margin);
 
 /// A camera in its place. Pixel (0, 0) is the upper left one, its centre at (0.5, 0.5).
 typedef struct dem_view {
@@ -54,6 +59,21 @@ typedef struct dem_view {
 } dem_view;
 
 dem_view dem_view_fit(const dem_render_scene *scene, const dem_camera *camera, int width, int height);
+
+/// The same for several scenes that shall be seen from one place: begin, add each, end. All extents are of sums of
+/// coordinates, so that nothing of a scene needs to be kept.
+typedef struct dem_fit {
+    dem_view view;
+    dem_camera camera;
+    bool begun;
+    dem_vec3 origin;                 // of the coordinates: near the first point
+    double low[4], high[4];          // along right, up, forward and the normal of the ground
+    double slope[2], need[2][2];     // of the sides of the picture: right, up
+} dem_fit;
+void dem_fit_begin(dem_fit *fit, const dem_camera *camera, int width, int height);
+void dem_fit_add(dem_fit *fit, const dem_render_scene *scene);
+dem_view dem_fit_end(const dem_fit *fit);
+
 /// Where a point is in the picture [pixels].
 void dem_view_project(const dem_view *view, dem_vec3 point, double *x, double *y);
 

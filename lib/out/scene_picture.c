@@ -1,16 +1,25 @@
 #include "out/scene_picture.h"
 
+#include <stdio.h>
 #include <stdlib.h>
+#include <string.h>
 
-#include "base/file.h"
 #include "base/memory.h"
 #include "math/quat.h"
+#include "out/field.h"
+#include "out/legend.h"
+#include "out/palette.h"
+#include "out/grid.h"
 #include "out/wall_mesh.h"
 
 static const double FIELD_DEG = 24, MARGIN = 0.03;
 static const double LEVEL = 0.999;       // cosine of the tilt up to which a floor is the ground
 static const float GLASS_CLEAR = 0.86f;  // light that passes straight through a wall
 static const dem_colour GLASS = {0.62f, 0.72f, 0.80f};
+
+static const double SMALL = 0.016;         // height of a capital letter, over the size of the picture
+static const double NEARLY = 0.06;         // over the range
+static const double LEGEND_HEIGHT = 0.62;  // over that of the picture
 
 enum { MOST_PIXELS = 20000 };  // of a side
 
@@ -24,7 +33,11 @@ typedef struct model {
     dem_mesh *walls;
     dem_render_shape *shapes;
     dem_render_body *bodies;
-    size_t shape_count;
+    size_t shape_count, body_count, glass;  // of the clumps; those that are shown; walls that are not the ground
+    double ground;                          // height of the ground, INFINITY: there is no floor [m]
+    dem_field field;                        // values: NULL: the colours show no numbers
+    dem_palette palette;
+    double low, high;
 } model;
 
 dem_picture_options dem_picture_defaults(void)
@@ -37,6 +50,11 @@ dem_picture_options dem_picture_defaults(void)
         .up = {0, 0, 1},
         .azimuth_deg = -60,
         .elevation_deg = 18,
+        .zoom = 1,
+        .look_at = {NAN, NAN, NAN},
+        .samples = 16,
+        .background = {255, 255, 255},
+        .time = NAN,
         .domain = {.low = {-INFINITY, -INFINITY, -INFINITY}, .high = {INFINITY, INFINITY, INFINITY}}};
 }
 
@@ -73,10 +91,16 @@ static dem_status make_room(model *m, const dem_clump *const *shapes, size_t sha
     return DEM_OK;
 }
 
-static void release(model *m)
+static void clear_walls(model *m)
 {
     for (size_t i = 0; m->walls && i < m->options->wall_count; i++)
         dem_mesh_free(&m->walls[i]);
+}
+
+static void release(model *m)
+{
+    clear_walls(m);
+    free(m->field.values);
     free(m->clumps);
     free(m->radii);
     free(m->diameters);
@@ -87,51 +111,58 @@ static void release(model *m)
 
 // ---- bodies
 
-static double value_of(const model *m, size_t i)
+static dem_status find_values(model *m, dem_error *error)
 {
-    const dem_body_view *b = m->view;
-    switch (m->options->colour) {
-    case DEM_PICTURE_SIZE:
-        return b->scale[i] * m->diameters[b->shape[i]];
-    case DEM_PICTURE_SPEED:
-        return v3_norm(b->velocity[i]);
-    case DEM_PICTURE_SPIN:
-        return v3_norm(b->spin[i]);
-    case DEM_PICTURE_COORDINATION:
-        return b->coordination[i];
-    case DEM_PICTURE_HEIGHT:
-        return v3_dot(b->position[i], m->up);
-    default:
-        return NAN;
-    }
+    const dem_picture_options *o = m->options;
+    const char *name = dem_field_of_colour(o->colour);
+    const dem_field_source source = {.bodies = m->view, .diameters = m->diameters, .up = m->up};
+    m->field = (dem_field){.unit = ""};
+    if (name)
+        return dem_field_make(name, &source, &m->field, error);
+    if (o->colour != DEM_PICTURE_VALUES)
+        return DEM_OK;
+    if (!o->values)
+        return dem_fail(error, DEM_USAGE, "there are no values to show in colours; give `values`");
+    m->field.unit = o->unit ? o->unit : "";
+    m->field.whole = o->whole;
+    snprintf(m->field.title, sizeof m->field.title, "%s", o->title ? o->title : "");
+    m->field.values = dem_alloc(m->view->count, sizeof *m->field.values);
+    if (!m->field.values)
+        return dem_fail_memory(error);
+    if (m->view->count)
+        memcpy(m->field.values, o->values, m->view->count * sizeof *m->field.values);
+    return DEM_OK;
 }
 
-static dem_colour colour_of(const model *m, size_t i, double low, double high)
+static dem_colour colour_of_shape(size_t shape)  // the golden section takes hues that lie apart
 {
-    if (m->options->colour == DEM_PICTURE_NUMBER)
-        return dem_colour_of_number(i);
-    if (m->options->colour == DEM_PICTURE_SHAPE)  // the golden section takes hues that lie apart
-        return dem_colour_lch(0.72, 0.085, 0.14 + 0.618033988749895 * m->view->shape[i]);
-    double value = value_of(m, i);
-    return dem_colour_ramp(high > low ? (value - low) / (high - low) : value - low);
+    return dem_colour_lch(0.72, 0.085, 0.14 + 0.618033988749895 * (double)shape);
+}
+
+static dem_colour colour_of(const model *m, size_t i)
+{
+    if (!m->field.values)
+        return m->options->colour == DEM_PICTURE_SHAPE ? colour_of_shape(m->view->shape[i]) : dem_colour_of_number(i);
+    double value = m->field.values[i] - m->low;
+    return dem_palette_at(&m->palette, m->high > m->low ? value / (m->high - m->low) : value);
+}
+
+static bool is_hidden(const model *m, size_t i)
+{
+    return m->options->hidden && m->options->hidden[i];
 }
 
 static void place_bodies(model *m)
 {
     const dem_body_view *b = m->view;
-    double low = INFINITY, high = -INFINITY;
-    for (size_t i = 0; i < b->count; i++) {
-        low = fmin(low, value_of(m, i));
-        high = fmax(high, value_of(m, i));
-    }
-    low = isnan(m->options->low) ? low : m->options->low;
-    high = isnan(m->options->high) ? high : m->options->high;
+    m->body_count = 0;
     for (size_t i = 0; i < b->count; i++)
-        m->bodies[i] = (dem_render_body){.shape = b->shape[i],
-                                         .position = b->position[i],
-                                         .orientation = b->orientation[i],
-                                         .scale = b->scale[i],
-                                         .colour = colour_of(m, i, low, high)};
+        if (!is_hidden(m, i))
+            m->bodies[m->body_count++] = (dem_render_body){.shape = b->shape[i],
+                                                           .position = b->position[i],
+                                                           .orientation = b->orientation[i],
+                                                           .scale = b->scale[i],
+                                                           .colour = colour_of(m, i)};
 }
 
 static dem_box bodies_box(const model *m)
@@ -159,39 +190,144 @@ static bool is_ground(const model *m, size_t wall, double *height)
 }
 
 // those that are the ground come last, so that they can be counted for the camera and then left out
-static dem_status place_walls(model *m, size_t *glass, double *ground, dem_error *error)
+static dem_status place_walls(model *m, dem_box bodies, dem_error *error)
 {
     const dem_picture_options *o = m->options;
-    dem_box box = dem_walls_box(&o->domain, bodies_box(m), o->walls, o->poses, o->wall_count);
+    dem_box box = dem_walls_box(&o->domain, bodies, o->walls, o->poses, o->wall_count);
     size_t floors = 0;
-    *glass = 0;
-    *ground = INFINITY;
+    m->glass = 0;
+    m->ground = INFINITY;
     for (size_t i = 0; i < o->wall_count; i++) {
         DEM_TRY(dem_wall_mesh(&o->walls[i], o->poses ? &o->poses[i] : NULL, box, &m->walls[i], error));
         double height;
         bool floor = is_ground(m, i, &height);
-        *ground = floor ? fmin(*ground, height) : *ground;
-        size_t place = floor ? o->wall_count - ++floors : (*glass)++;
+        m->ground = floor ? fmin(m->ground, height) : m->ground;
+        size_t place = floor ? o->wall_count - ++floors : m->glass++;
         m->shapes[m->shape_count + place].mesh = &m->walls[i];
-        m->bodies[m->view->count + place] = (dem_render_body){.shape = (uint32_t)(m->shape_count + place),
-                                                              .orientation = {1, 0, 0, 0},
-                                                              .scale = 1,
-                                                              .colour = GLASS,
-                                                              .clear = GLASS_CLEAR};
+        m->bodies[m->body_count + place] = (dem_render_body){.shape = (uint32_t)(m->shape_count + place),
+                                                             .orientation = {1, 0, 0, 0},
+                                                             .scale = 1,
+                                                             .colour = GLASS,
+                                                             .clear = GLASS_CLEAR};
     }
     return DEM_OK;
 }
 
-// ---- the picture
+// ---- the camera
 
-static dem_camera choose_camera(const model *m)
+static dem_view choose_view(const model *m, const dem_picture_span *span)
 {
-    double azimuth = m->options->azimuth_deg * DEM_PI / 180, elevation = m->options->elevation_deg * DEM_PI / 180;
-    dem_vec3 right = v3_normal_to(m->up), ahead = v3_cross(m->up, right);
-    dem_vec3 level = v3_along(v3_scale(right, cos(azimuth)), sin(azimuth), ahead);
-    dem_vec3 eye = v3_along(v3_scale(level, cos(elevation)), sin(elevation), m->up);
-    return (dem_camera){.forward = v3_scale(eye, -1), .up = m->up, .field_deg = FIELD_DEG, .margin = MARGIN};
+    const dem_picture_options *o = m->options;
+    dem_view view = dem_fit_end(&span->fit);
+    view.ground = isfinite(m->ground) ? m->ground : view.ground;
+    if (isfinite(v3_norm2(o->look_at))) {
+        view.radius += v3_distance(view.centre, o->look_at);
+        view.centre = o->look_at;
+    }
+    view.pixel /= o->zoom;
+    return view;
 }
+
+// ---- what is written beside the bodies
+
+typedef struct layout {
+    double size;        // of capital letters [pixels]
+    int width, height;  // of what is left for the bodies
+    dem_legend legend;  // without a range
+    bool has_legend;
+    const char **names;  // of the shapes
+    dem_colour *colours;
+} layout;
+
+double dem_label_size(int width, int height)
+{
+    return fmin(fmax(round(SMALL * sqrt((double)width * height)), 8), 200);
+}
+
+dem_rgb dem_ink_on(const uint8_t background[3])
+{
+    bool light = 299 * background[0] + 587 * background[1] + 114 * background[2] > 128000;
+    return light ? (dem_rgb){24, 24, 24} : (dem_rgb){235, 235, 235};
+}
+
+static dem_status name_shapes(const model *m, layout *l, dem_error *error)
+{
+    enum { NAME_BYTES = 24 };
+    l->names = dem_alloc(m->shape_count, sizeof *l->names + NAME_BYTES);
+    l->colours = dem_alloc(m->shape_count, sizeof *l->colours);
+    if (!l->names || !l->colours)
+        return dem_fail_memory(error);
+    char *room = (char *)(l->names + m->shape_count);
+    for (size_t i = 0; i < m->shape_count; i++, room += NAME_BYTES) {
+        snprintf(room, NAME_BYTES, "%zu", i);
+        const char *const *given = m->options->shape_names;
+        l->names[i] = given && given[i] ? given[i] : room;
+        l->colours[i] = colour_of_shape(i);
+    }
+    l->legend = (dem_legend){.names = l->names, .colours = l->colours, .count = m->shape_count};
+    return DEM_OK;
+}
+
+static dem_status lay_out(const model *m, layout *l, dem_error *error)
+{
+    const dem_picture_options *o = m->options;
+    *l = (layout){.width = o->width, .height = o->height};
+    if (!o->labels)
+        return DEM_OK;
+    l->size = o->label_size > 0 ? o->label_size : dem_label_size(o->width, o->height);
+    if (o->colour == DEM_PICTURE_SHAPE)
+        DEM_TRY(name_shapes(m, l, error));
+    else
+        l->legend = (dem_legend){.title = m->field.title[0] ? m->field.title : NULL,
+                                 .unit = m->field.unit,
+                                 .whole = m->field.whole,
+                                 .palette = &m->palette};
+    l->has_legend = m->field.values || l->names;
+    // a legend may take a third of the picture, the line at its foot a quarter
+    double strip = l->has_legend ? dem_legend_width(&l->legend, l->size) + 2 * dem_label_margin(l->size) : 0;
+    double foot = dem_foot_height(l->size);
+    l->width -= (int)fmin(strip, o->width / 3.0);
+    l->height -= (int)fmin(foot, o->height / 4.0);
+    return DEM_OK;
+}
+
+static void release_layout(layout *l)
+{
+    free(l->names);
+    free(l->colours);
+}
+
+static dem_status write_legend(const model *m, const layout *l, dem_image *image, dem_rgb ink, dem_error *error)
+{
+    dem_legend legend = l->legend;
+    legend.low = m->low;
+    legend.high = m->high;
+    for (size_t i = 0; m->field.values && i < m->view->count; i++) {
+        legend.below |= !is_hidden(m, i) && m->field.values[i] < m->low;
+        legend.above |= !is_hidden(m, i) && m->field.values[i] > m->high;
+    }
+    double height = fmin(LEGEND_HEIGHT * l->height, 40 * l->size);
+    return dem_legend_draw(image, &legend, l->width + dem_label_margin(l->size), (l->height - height) / 2, height,
+                           l->size, ink, error);
+}
+
+static dem_status write_labels(const model *m, const layout *l, const dem_view *view, const dem_picture_span *span,
+                               dem_image *image, dem_error *error)
+{
+    const dem_picture_options *o = m->options;
+    dem_rgb ink = dem_ink_on(o->background);
+    double side = dem_label_margin(l->size), base = image->height - side;
+    DEM_TRY(dem_scale_bar_draw(image, side, base, 0.25 * l->width, view->pixel, "m", l->size, ink, error));
+    if (isfinite(o->time)) {
+        char time[DEM_LABEL_TEXT], text[DEM_LABEL_TEXT + 8];
+        const dem_text_style style = {.size = l->size, .ink = ink, .align = DEM_ALIGN_RIGHT};
+        snprintf(text, sizeof text, "t = %s", dem_quantity_text(o->time, "s", fmax(span->end, o->time), time));
+        DEM_TRY(dem_text_draw(image, l->width - side, base, &style, text, error));
+    }
+    return l->has_legend ? write_legend(m, l, image, ink, error) : DEM_OK;
+}
+
+// ---- the picture
 
 static dem_status check_options(const dem_picture_options *o, dem_error *error)
 {
@@ -200,34 +336,139 @@ static dem_status check_options(const dem_picture_options *o, dem_error *error)
                         MOST_PIXELS);
     if (!(fabs(o->elevation_deg) < 90) || !isfinite(o->azimuth_deg))
         return dem_fail(error, DEM_USAGE, "the elevation must lie between -90 and 90 degrees; take 18");
+    if (!(o->zoom > 0 && isfinite(o->zoom)))
+        return dem_fail(error, DEM_USAGE, "the zoom must be above 0; take 1");
+    if (!(v3_norm2(o->up) > 0))
+        return dem_fail(error, DEM_USAGE, "nothing tells which way is up; take z");
     return DEM_OK;
 }
 
-dem_status dem_scene_picture_render(const dem_ctx *ctx, const dem_body_view *bodies, const dem_clump *const *shapes,
-                                    size_t shape_count, const dem_picture_options *options, dem_image *image,
-                                    dem_view *view, dem_error *error)
+// an end that nearly is a round number becomes one
+static void round_ends(double *low, double *high)
 {
-    model m = {.options = options, .view = bodies, .up = v3_unit(options->up)};
-    size_t glass = 0;
-    double ground = INFINITY;
+    double ticks[DEM_TICKS], step, span = *high - *low;
+    if (!(span > 0) || dem_ticks(*low, *high, 8, false, ticks, &step) < 2)
+        return;
+    double below = floor(*low / step) * step, above = ceil(*high / step) * step;
+    *low = *low - below < NEARLY * span ? below : *low;
+    *high = above - *high < NEARLY * span ? above : *high;
+}
+
+dem_picture_map dem_picture_range(const dem_picture_options *o, const dem_picture_span *span, double *low, double *high)
+{
+    bool none = !(span->low <= span->high), chosen = isnan(o->low) && isnan(o->high);
+    double near_low = none ? 0 : span->low, near_high = none ? 0 : span->high;
+    if (!none)
+        round_ends(&near_low, &near_high);
+    *low = isnan(o->low) ? near_low : o->low;
+    *high = isnan(o->high) ? near_high : o->high;
+    bool split = *low < 0 && *high > 0;
+    bool may_diverge = o->map == DEM_PICTURE_MAP_AUTO || o->map == DEM_PICTURE_MAP_DIVERGING;
+    if (chosen && split && may_diverge && fmin(-*low, *high) > NEARLY * (*high - *low)) {  // white is zero
+        *high = fmax(-*low, *high);
+        *low = -*high;
+    }
+    if (o->map != DEM_PICTURE_MAP_AUTO)
+        return o->map;
+    return split && fabs(*low + *high) < 1e-9 * *high ? DEM_PICTURE_MAP_DIVERGING : DEM_PICTURE_MAP_RAMP;
+}
+
+static dem_status begin(model *m, const dem_clump *const *shapes, size_t shape_count, dem_error *error)
+{
+    DEM_TRY(check_options(m->options, error));
+    m->up = v3_unit(m->options->up);
+    DEM_TRY(make_room(m, shapes, shape_count, error));
+    return find_values(m, error);
+}
+
+static dem_status measure(model *m, const layout *l, dem_picture_span *span, dem_error *error)
+{
+    const dem_picture_options *o = m->options;
+    double low, high;
+    if (!span->begun) {
+        dem_camera camera =
+            dem_camera_around(m->up, o->azimuth_deg, o->elevation_deg, o->parallel ? 0 : FIELD_DEG, MARGIN);
+        *span =
+            (dem_picture_span){.begun = true, .bodies = box_empty(), .low = INFINITY, .high = -INFINITY, .end = NAN};
+        dem_fit_begin(&span->fit, &camera, l->width, l->height);
+    }
+    dem_box box = bodies_box(m);
+    span->bodies = (dem_box){v3_min(span->bodies.low, box.low), v3_max(span->bodies.high, box.high)};
+    if (m->field.values) {
+        dem_field_range(m->field.values, o->hidden, m->view->count, &low, &high);
+        span->low = fmin(span->low, low);
+        span->high = fmax(span->high, high);
+    }
+    span->end = fmax(span->end, o->time);
+    place_bodies(m);
+    DEM_TRY(place_walls(m, span->bodies, error));
+    const dem_render_scene all = {
+        m->shapes, m->shape_count + o->wall_count, m->bodies, m->body_count + o->wall_count, NULL, 0};
+    dem_fit_add(&span->fit, &all);
+    return DEM_OK;
+}
+
+dem_status dem_scene_picture_measure(const dem_body_view *bodies, const dem_clump *const *shapes, size_t shape_count,
+                                     const dem_picture_options *options, dem_picture_span *span, dem_error *error)
+{
+    model m = {.options = options, .view = bodies};
+    layout l = {0};
+    dem_status status = begin(&m, shapes, shape_count, error);
+    if (status == DEM_OK)
+        status = lay_out(&m, &l, error);
+    if (status == DEM_OK)
+        status = measure(&m, &l, span, error);
+    release_layout(&l);
+    release(&m);
+    return status;
+}
+
+// the bodies in the upper left part of the image, the rest in the colour of the background
+static dem_status draw(const dem_ctx *ctx, model *m, const layout *l, const dem_picture_span *span, dem_image *image,
+                       dem_view *view, dem_error *error)
+{
+    const dem_picture_options *o = m->options;
+    const uint8_t *b = o->background;
+    const dem_colour background = dem_colour_of_srgb(b[0], b[1], b[2]);
+    dem_palette_make(dem_picture_range(o, span, &m->low, &m->high), &m->palette);
+    clear_walls(m);
+    place_bodies(m);
+    DEM_TRY(place_walls(m, span->bodies, error));
+    const dem_render_scene seen = {
+        m->shapes, m->shape_count + o->wall_count, m->bodies, m->body_count + m->glass, &background, o->samples};
+    *view = choose_view(m, span);
+    DEM_TRY(dem_render(ctx, &seen, view, image, error));
+    if (l->width == o->width && l->height == o->height)
+        return DEM_OK;
+    dem_image part = *image;
+    dem_status status = dem_image_create(o->width, o->height, image, error);
+    if (status == DEM_OK) {
+        dem_image_fill(image, (dem_rgb){b[0], b[1], b[2]});
+        dem_image_paste(image, &part, 0, 0);
+    }
+    dem_image_free(&part);
+    return status == DEM_OK ? write_labels(m, l, view, span, image, error) : status;
+}
+
+dem_status dem_scene_picture_render(const dem_ctx *ctx, const dem_body_view *bodies, const dem_clump *const *shapes,
+                                    size_t shape_count, const dem_picture_options *options,
+                                    const dem_picture_span *span, dem_image *image, dem_view *view, dem_error *error)
+{
+    model m = {.options = options, .view = bodies};
+    layout l = {0};
+    dem_picture_span own = {0};
+    dem_view how = {0};
     *image = (dem_image){0};
-    DEM_TRY(check_options(options, error));
-    dem_status status = make_room(&m, shapes, shape_count, error);
-    if (status == DEM_OK) {
-        place_bodies(&m);
-        status = place_walls(&m, &glass, &ground, error);
-    }
-    if (status == DEM_OK) {
-        size_t all = bodies->count + options->wall_count;
-        dem_render_scene scene = {m.shapes, shape_count + options->wall_count, m.bodies, all};
-        dem_camera camera = choose_camera(&m);
-        dem_view fit = dem_view_fit(&scene, &camera, options->width, options->height);
-        scene.body_count = bodies->count + glass;
-        fit.ground = isfinite(ground) ? ground : fit.ground;
-        if (view)
-            *view = fit;
-        status = dem_render(ctx, &scene, &fit, image, error);
-    }
+    dem_status status = begin(&m, shapes, shape_count, error);
+    if (status == DEM_OK)
+        status = lay_out(&m, &l, error);
+    if (status == DEM_OK && !span)
+        status = measure(&m, &l, &own, error);
+    if (status == DEM_OK)
+        status = draw(ctx, &m, &l, span ? span : &own, image, view ? view : &how, error);
+    if (status != DEM_OK)
+        dem_image_free(image);
+    release_layout(&l);
     release(&m);
     return status;
 }
@@ -237,12 +478,6 @@ dem_status dem_picture_bodies(const dem_ctx *ctx, const dem_body_view *bodies, c
                               dem_error *error)
 {
     dem_image image;
-    dem_buffer png = {0};
-    DEM_TRY(dem_scene_picture_render(ctx, bodies, shapes, shape_count, options, &image, NULL, error));
-    dem_status status = dem_png_encode(&image, &png, error);
-    dem_image_free(&image);
-    if (status == DEM_OK)
-        return dem_file_write_buffer(path, &png, error);
-    dem_buffer_release(&png);
-    return status;
+    DEM_TRY(dem_scene_picture_render(ctx, bodies, shapes, shape_count, options, NULL, &image, NULL, error));
+    return dem_png_write(&image, path, error);
 }

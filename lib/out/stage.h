@@ -7,7 +7,7 @@
 
 enum {
     STAGE_SUBSETS = 16,  // neighbouring pixels share a set of light rays, each takes another part of it
-    STAGE_SKY_RAYS = 8,  // of one part
+    STAGE_SKY_RAYS = 6,  // of one part
     STAGE_SUN_RAYS = 3,
 };
 /// The `body` of a spot on the ground.

@@ -6,6 +6,15 @@
 
 enum { MANY_PARTS = 20000000 };
 
+dem_camera dem_camera_around(dem_vec3 up, double azimuth_deg, double elevation_deg, double field_deg, double margin)
+{
+    double azimuth = azimuth_deg * DEM_PI / 180, elevation = elevation_deg * DEM_PI / 180;
+    dem_vec3 right = v3_normal_to(up), ahead = v3_cross(up, right);
+    dem_vec3 level = v3_along(v3_scale(right, cos(azimuth)), sin(azimuth), ahead);
+    dem_vec3 eye = v3_along(v3_scale(level, cos(elevation)), sin(elevation), up);
+    return (dem_camera){.forward = v3_scale(eye, -1), .up = up, .field_deg = field_deg, .margin = margin};
+}
+
 static dem_vec3 placed(const dem_render_body *body, dem_vec3 point)
 {
     return v3_along(body->position, body->scale, quat_rotate(body->orientation, point));
@@ -15,141 +24,177 @@ typedef void visitor(void *user, dem_vec3 centre, double radius);
 
 static size_t parts(const dem_render_shape *shape)
 {
-    return shape->mesh ? 3 * shape->mesh->triangle_count : shape->ball_count;
+    return shape->mesh ? shape->mesh->vertex_count : shape->ball_count;
 }
 
-// a part of a shape as a ball: a corner of a triangle, or a ball
+// a part of a shape as a ball: a vertex, or a ball
 static dem_ball part(const dem_render_shape *shape, size_t k)
 {
-    return shape->mesh ? (dem_ball){shape->mesh->vertices[shape->mesh->triangles[k]], 0} : shape->balls[k];
+    return shape->mesh ? (dem_ball){shape->mesh->vertices[k], 0} : shape->balls[k];
 }
 
-static dem_ball bounding_ball(const dem_render_shape *shape)
+// what holds a shape; NULL: there was no memory, and all its parts do
+typedef struct hold {
+    dem_ball *balls;
+    size_t count;
+} hold;
+
+// all parts but the vertices that no triangle uses
+static hold hold_shape(const dem_render_shape *shape)
+{
+    size_t count = parts(shape);
+    hold h = {.balls = dem_alloc(count, sizeof *h.balls)};
+    unsigned char *used = dem_alloc_zero(count, 1);
+    for (size_t t = 0; used && shape->mesh && t < 3 * shape->mesh->triangle_count; t++)
+        used[shape->mesh->triangles[t]] = 1;
+    for (size_t k = 0; h.balls && k < count; k++)
+        if (!shape->mesh || !used || used[k])
+            h.balls[h.count++] = part(shape, k);
+    free(used);
+    return h;
+}
+
+// one ball instead of many
+static void bound(hold *h)
 {
     dem_box box = box_empty();
-    for (size_t k = 0; k < parts(shape); k++)
-        box = box_with(box, part(shape, k).centre);
+    for (size_t k = 0; k < h->count; k++)
+        box = box_with(box, h->balls[k].centre);
     dem_ball ball = {v3_scale(v3_add(box.low, box.high), 0.5), 0};
-    for (size_t k = 0; k < parts(shape); k++) {
-        dem_ball b = part(shape, k);
-        ball.radius = fmax(ball.radius, v3_distance(b.centre, ball.centre) + b.radius);
-    }
-    return ball;
+    for (size_t k = 0; k < h->count; k++)
+        ball.radius = fmax(ball.radius, v3_distance(h->balls[k].centre, ball.centre) + h->balls[k].radius);
+    h->count = h->count > 0;
+    if (h->count)
+        h->balls[0] = ball;
 }
 
 // calls `visit` with balls that hold the scene between them: its parts or, where they are too many, whole bodies
-static void visit_all(const dem_render_scene *scene, const dem_ball *bounds, visitor *visit, void *user)
+static void visit_all(const dem_render_scene *scene, visitor *visit, void *user)
 {
+    size_t all = 0;
+    hold *holds = dem_alloc_zero(scene->shape_count, sizeof *holds);
+    for (size_t i = 0; i < scene->body_count; i++)
+        all += parts(&scene->shapes[scene->bodies[i].shape]);
+    for (size_t i = 0; holds && i < scene->shape_count; i++) {
+        holds[i] = hold_shape(&scene->shapes[i]);
+        if (all > MANY_PARTS && holds[i].balls)
+            bound(&holds[i]);
+    }
     for (size_t i = 0; i < scene->body_count; i++) {
         const dem_render_body *body = &scene->bodies[i];
         const dem_render_shape *shape = &scene->shapes[body->shape];
-        size_t count = parts(shape);
-        for (size_t k = 0; k < (bounds && count ? 1 : count); k++) {
-            dem_ball b = bounds ? bounds[body->shape] : part(shape, k);
+        const hold *h = holds && holds[body->shape].balls ? &holds[body->shape] : NULL;
+        for (size_t k = 0; k < (h ? h->count : parts(shape)); k++) {
+            dem_ball b = h ? h->balls[k] : part(shape, k);
             visit(user, placed(body, b.centre), b.radius * body->scale);
         }
     }
+    for (size_t i = 0; holds && i < scene->shape_count; i++)
+        free(holds[i].balls);
+    free(holds);
 }
 
-// of all shapes, where the scene has too many parts to visit each (or there is no memory: NULL)
-static dem_ball *bound_shapes(const dem_render_scene *scene)
-{
-    size_t all = 0;
-    for (size_t i = 0; i < scene->body_count; i++)
-        all += parts(&scene->shapes[scene->bodies[i].shape]);
-    dem_ball *bounds = all > MANY_PARTS ? dem_alloc(scene->shape_count, sizeof *bounds) : NULL;
-    for (size_t i = 0; bounds && i < scene->shape_count; i++)
-        bounds[i] = bounding_ball(&scene->shapes[i]);
-    return bounds;
-}
-
-// extents along the axes of the view
-typedef struct extent {
-    dem_vec3 axes[4];  // right, up, forward, normal of the ground
-    double low[4], high[4];
-} extent;
-
+// The extents along the axes of the view, and how far the eye must step back so that everything is on the inner side of
+// each side of the picture: a plane through the eye, whose slope from the line of sight is that of half the picture.
+// All are the largest of linear functions of the places, so each point is looked at once.
 static void widen(void *user, dem_vec3 centre, double radius)
 {
-    extent *e = user;
+    dem_fit *f = user;
+    if (!f->begun) {
+        f->origin = centre;
+        f->begun = true;
+    }
+    dem_vec3 d = v3_sub(centre, f->origin);
+    double at[4] = {v3_dot(d, f->view.right), v3_dot(d, f->view.up), v3_dot(d, f->view.forward),
+                    v3_dot(d, f->view.ground_up)};
     for (int k = 0; k < 4; k++) {
-        double at = v3_dot(centre, e->axes[k]);
-        e->low[k] = fmin(e->low[k], at - radius);
-        e->high[k] = fmax(e->high[k], at + radius);
+        f->low[k] = fmin(f->low[k], at[k] - radius);
+        f->high[k] = fmax(f->high[k], at[k] + radius);
+    }
+    for (int k = 0; k < 2 && f->camera.field_deg > 0; k++) {
+        double t = f->slope[k], far = radius * sqrt(1 + t * t) / t - at[2];
+        f->need[k][0] = fmax(f->need[k][0], at[k] / t + far);
+        f->need[k][1] = fmax(f->need[k][1], -at[k] / t + far);
     }
 }
 
-// the least distance of the eye for which everything is on the inner side of each side of the picture: a plane through
-// the eye, whose slope from the line of sight is that of half the picture
-typedef struct pyramid {
-    const dem_view *view;
-    double slope[2];    // to the right, up
-    double need[2][2];  // at the positive and the negative side
-} pyramid;
-
-static void step_back(void *user, dem_vec3 centre, double radius)
+static double smaller_side(const dem_view *view)
 {
-    pyramid *p = user;
-    dem_vec3 d = v3_sub(centre, p->view->centre);
-    double depth = v3_dot(d, p->view->forward), at[2] = {v3_dot(d, p->view->right), v3_dot(d, p->view->up)};
-    for (int k = 0; k < 2; k++) {
-        double t = p->slope[k], far = radius * sqrt(1 + t * t) / t - depth;
-        p->need[k][0] = fmax(p->need[k][0], at[k] / t + far);
-        p->need[k][1] = fmax(p->need[k][1], -at[k] / t + far);
-    }
+    return view->width < view->height ? view->width : view->height;
+}
+
+static double margins(const dem_fit *f)
+{
+    return 2 * f->camera.margin * smaller_side(&f->view);
+}
+
+void dem_fit_begin(dem_fit *f, const dem_camera *camera, int width, int height)
+{
+    *f = (dem_fit){.camera = *camera, .need = {{-INFINITY, -INFINITY}, {-INFINITY, -INFINITY}}};
+    dem_view *v = &f->view;
+    *v = (dem_view){
+        .forward = v3_unit(camera->forward), .ground_up = v3_unit(camera->up), .width = width, .height = height};
+    v->right = v3_unit(v3_cross(v->forward, v->ground_up));
+    v->up = v3_cross(v->right, v->forward);
+    double sides[2] = {width, height}, angle = camera->field_deg * DEM_PI / 360;
+    for (int k = 0; k < 4; k++)
+        f->low[k] = INFINITY, f->high[k] = -INFINITY;
+    for (int k = 0; k < 2; k++)
+        f->slope[k] = tan(angle) * fmax(sides[k] - margins(f), 1) / smaller_side(v);
+}
+
+void dem_fit_add(dem_fit *f, const dem_render_scene *scene)
+{
+    visit_all(scene, widen, f);
 }
 
 // moves the eye back until all is in the picture, and sideways until the free room is the same on either side
-static void place_eye(dem_view *view, const dem_render_scene *scene, const dem_ball *bounds, double angle,
-                      double margins)
+static void place_eye(const dem_fit *f, const double middle[3], dem_view *view)
 {
-    double smaller = view->width < view->height ? view->width : view->height, sides[2] = {view->width, view->height};
-    pyramid p = {.view = view, .need = {{-INFINITY, -INFINITY}, {-INFINITY, -INFINITY}}};
-    for (int k = 0; k < 2; k++)
-        p.slope[k] = tan(angle) * fmax(sides[k] - margins, 1) / smaller;
-    visit_all(scene, bounds, step_back, &p);
-    double distance = 0, shift[2] = {0};
-    for (int k = 0; k < 2 && isfinite(p.need[k][0]); k++) {
-        distance = fmax(distance, (p.need[k][0] + p.need[k][1]) / 2);
-        shift[k] = (p.need[k][0] - p.need[k][1]) / 2 * p.slope[k];
+    double distance = 0, shift[2] = {0}, angle = f->camera.field_deg * DEM_PI / 360;
+    for (int k = 0; k < 2 && isfinite(f->need[k][0]); k++) {
+        // as seen from the middle
+        double one = f->need[k][0] - middle[k] / f->slope[k] + middle[2];
+        double other = f->need[k][1] + middle[k] / f->slope[k] + middle[2];
+        distance = fmax(distance, (one + other) / 2);
+        shift[k] = (one - other) / 2 * f->slope[k];
     }
     view->distance = distance > 1e-6 * view->radius ? distance : view->radius / sin(angle);
     view->centre = v3_along(v3_along(view->centre, shift[0], view->right), shift[1], view->up);
     view->radius += hypot(shift[0], shift[1]);
-    view->pixel = 2 * tan(angle) * view->distance / smaller;
+    view->pixel = 2 * tan(angle) * view->distance / smaller_side(view);
+}
+
+dem_view dem_fit_end(const dem_fit *f)
+{
+    dem_view view = f->view;
+    const dem_vec3 axes[3] = {view.right, view.up, view.forward};
+    double half[3], middle[3], ground = f->low[3];
+    view.centre = f->origin;
+    for (int k = 0; k < 3; k++) {
+        bool any = f->high[k] >= f->low[k];  // nothing there: a picture of nothing
+        middle[k] = any ? (f->low[k] + f->high[k]) / 2 : 0;
+        half[k] = any ? (f->high[k] - f->low[k]) / 2 : 1;
+        view.centre = v3_along(view.centre, middle[k], axes[k]);
+    }
+    view.ground = isfinite(ground) ? ground + v3_dot(f->origin, view.ground_up) : -1;
+    view.radius = sqrt(half[0] * half[0] + half[1] * half[1] + half[2] * half[2]);
+    if (!(view.radius > 0))
+        view.radius = 1;
+    view.pixel = fmax(2 * half[0] / fmax(view.width - margins(f), 1), 2 * half[1] / fmax(view.height - margins(f), 1));
+    if (f->camera.field_deg > 0)
+        place_eye(f, middle, &view);
+    else if (!(view.pixel > 0))
+        view.pixel = 2 * view.radius / smaller_side(&view);
+    return view;
 }
 
 dem_view dem_view_fit(const dem_render_scene *scene, const dem_camera *camera, int width, int height)
 {
-    dem_view view = {
-        .forward = v3_unit(camera->forward), .ground_up = v3_unit(camera->up), .width = width, .height = height};
-    view.right = v3_unit(v3_cross(view.forward, view.ground_up));
-    view.up = v3_cross(view.right, view.forward);
-    extent e = {.axes = {view.right, view.up, view.forward, view.ground_up}};
-    for (int k = 0; k < 4; k++)
-        e.low[k] = INFINITY, e.high[k] = -INFINITY;
-    dem_ball *bounds = bound_shapes(scene);
-    visit_all(scene, bounds, widen, &e);
-    if (!(e.high[0] >= e.low[0]))
-        for (int k = 0; k < 4; k++)
-            e.low[k] = -1, e.high[k] = 1;  // nothing there: a picture of nothing
-    double half[3];
-    for (int k = 0; k < 3; k++) {
-        view.centre = v3_along(view.centre, (e.low[k] + e.high[k]) / 2, e.axes[k]);
-        half[k] = (e.high[k] - e.low[k]) / 2;
-    }
-    view.ground = e.low[3];
-    view.radius = sqrt(half[0] * half[0] + half[1] * half[1] + half[2] * half[2]);
-    if (!(view.radius > 0))
-        view.radius = 1;
-    double smaller = width < height ? width : height, margins = 2 * camera->margin * smaller;
-    view.pixel = fmax(2 * half[0] / fmax(width - margins, 1), 2 * half[1] / fmax(height - margins, 1));
-    if (camera->field_deg > 0)
-        place_eye(&view, scene, bounds, camera->field_deg * DEM_PI / 360, margins);
-    else if (!(view.pixel > 0))
-        view.pixel = 2 * view.radius / smaller;
-    free(bounds);
-    return view;
+    dem_fit fit;
+    dem_fit_begin(&fit, camera, width, height);
+    dem_fit_add(&fit, scene);
+    return dem_fit_end(&fit);
 }
 
 void dem_view_project(const dem_view *view, dem_vec3 point, double *x, double *y)

@@ -15,14 +15,11 @@ typedef struct writer {
     uint64_t offset;  // of the next block
 } writer;
 
-static const struct {
-    const char *name;
-    size_t bytes;
-} types[] = {[DEM_VTP_FLOAT64] = {"Float64", 8},
-             [DEM_VTP_FLOAT32] = {"Float32", 4},
-             [DEM_VTP_INT32] = {"Int32", 4},
-             [DEM_VTP_UINT32] = {"UInt32", 4},
-             [DEM_VTP_INT64] = {"Int64", 8}};
+const dem_vtp_kind dem_vtp_kinds[DEM_VTP_TYPES] = {[DEM_VTP_FLOAT64] = {"Float64", 8},
+                                                   [DEM_VTP_FLOAT32] = {"Float32", 4},
+                                                   [DEM_VTP_INT32] = {"Int32", 4},
+                                                   [DEM_VTP_UINT32] = {"UInt32", 4},
+                                                   [DEM_VTP_INT64] = {"Int64", 8}};
 
 static void put_xml(writer *w, const char *text)
 {
@@ -37,7 +34,7 @@ static void put_head(writer *w, const dem_vtp_array *a, bool field, uint64_t byt
         dem_buffer_bytes(w->out, &bytes, sizeof bytes);
         return;
     }
-    dem_buffer_print(w->out, "<DataArray type=\"%s\" Name=\"%s\" NumberOfComponents=\"%d\"", types[a->type].name,
+    dem_buffer_print(w->out, "<DataArray type=\"%s\" Name=\"%s\" NumberOfComponents=\"%d\"", dem_vtp_kinds[a->type].name,
                      a->name, a->width);
     if (field)
         dem_buffer_text(w->out, " NumberOfTuples=\"1\"");
@@ -47,7 +44,7 @@ static void put_head(writer *w, const dem_vtp_array *a, bool field, uint64_t byt
 
 static void put_array(writer *w, const dem_vtp_array *a, bool field, size_t tuples)
 {
-    size_t bytes = tuples * (size_t)a->width * types[a->type].bytes;
+    size_t bytes = tuples * (size_t)a->width * dem_vtp_kinds[a->type].bytes;
     put_head(w, a, field, bytes);
     if (w->raw)
         dem_buffer_bytes(w->out, a->data, bytes);

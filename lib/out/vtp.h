@@ -12,6 +12,14 @@ typedef enum dem_vtp_type {
     DEM_VTP_UINT32,
     DEM_VTP_INT64
 } dem_vtp_type;
+enum { DEM_VTP_TYPES = DEM_VTP_INT64 + 1 };
+
+/// What VTK calls a type, and the size of a number.
+typedef struct dem_vtp_kind {
+    const char *name;
+    size_t bytes;
+} dem_vtp_kind;
+extern const dem_vtp_kind dem_vtp_kinds[DEM_VTP_TYPES];
 
 /// A named array of `width` numbers per point or cell; of field data: `width` numbers in all. Names are plain words.
 typedef struct dem_vtp_array {

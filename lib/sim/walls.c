@@ -79,15 +79,21 @@ void dem_walls_release(dem_walls *walls)
     free(walls->rows);
 }
 
-static void place(dem_wall *w, double t, double *row)
+dem_vec3 dem_wall_pose(dem_vec3 velocity, dem_vec3 through_0, dem_vec3 spin, double t, dem_quat *orientation)
 {
-    double angle = v3_norm(w->spin) * t;
-    dem_vec3 axis = v3_unit(w->spin), through = v3_along(w->through, t, w->velocity);
+    double angle = v3_norm(spin) * t;
+    dem_vec3 axis = v3_unit(spin), through = v3_along(through_0, t, velocity);
     // whole turns are taken off first: exact for long runs
     angle = remainder(angle, 2 * DEM_PI);
     dem_vec3 e = v3_scale(axis, sin(angle / 2));
-    w->orientation = (dem_quat){cos(angle / 2), e.x, e.y, e.z};
-    w->position = v3_sub(through, quat_rotate(w->orientation, w->through));
+    *orientation = (dem_quat){cos(angle / 2), e.x, e.y, e.z};
+    return v3_sub(through, quat_rotate(*orientation, through_0));
+}
+
+static void place(dem_wall *w, double t, double *row)
+{
+    w->position = dem_wall_pose(w->velocity, w->through, w->spin, t, &w->orientation);
+    dem_vec3 through = v3_along(w->through, t, w->velocity);
     dem_vec3 normal = wall_turn(w, w->normal), point = wall_to_space(w, w->point);
     dem_vec3 passing = v3_sub(w->velocity, v3_cross(w->spin, through));
     double along = w->form == DEM_FORM_PLANE ? v3_dot(normal, point) : w->radius;

@@ -41,6 +41,9 @@ void dem_walls_release(dem_walls *walls);
 /// Puts the walls where they are at time t.
 void dem_walls_place(dem_walls *walls, double t);
 
+/// Where the frame of time 0 has moved to at time t [m], and how it has turned; see dem_wall_def.
+dem_vec3 dem_wall_pose(dem_vec3 velocity, dem_vec3 through, dem_vec3 spin, double t, dem_quat *orientation);
+
 /// Bound of the speed of the sweeping walls' surfaces within `radius` of `centre` [m/s].
 double dem_walls_speed(const dem_walls *walls, dem_vec3 centre, double radius);
 

@@ -1,6 +1,6 @@
 #!/usr/bin/python3
 """Writes small valid files to start the fuzzers from: make_seeds.py FOLDER -> FOLDER/{stl,obj,ply,off,sniff,scene,csv,
-checkpoint,volume}/"""
+checkpoint,vtp,clump_import,volume}/"""
 import gzip
 import hashlib
 import os
@@ -87,6 +87,61 @@ seeds['volume'] = [
     (nrrd % ('uint64', 'ascii', 'little', 'k:=v\n')).encode() + b' '.join(b'%d' % c for c in cells),
     (meta % ('MET_UCHAR', 'False')).encode() + bytes(cells),
     (meta % ('MET_INT', 'True')).encode() + zlib.compress(struct.pack('<24i', *cells)), b'R\x13\x00' + bytes(cells[:8])]
+
+
+def vtp(points, vertices, lines, triangles, fields, arrays, cells):
+    """As lib/out/vtp.c writes it."""
+    blocks = []
+
+    def tag(kind, name, width, data, field=False):
+        offset = sum(8 + len(b) for b in blocks)
+        blocks.append(data)
+        return '<DataArray type="%s" Name="%s" NumberOfComponents="%d"%s format="appended" offset="%d"/>\n' % (
+            kind, name, width, ' NumberOfTuples="1"' if field else '', offset)
+
+    def some_cells(kind, corners, size):
+        if not corners:
+            return ''
+        n = len(corners)
+        return '<%s>\n' % kind + tag('Int64', 'connectivity', 1, struct.pack('<%dq' % n, *corners)) + \
+            tag('Int64', 'offsets', 1, struct.pack('<%dq' % (n // size), *range(size, n + 1, size))) + '</%s>\n' % kind
+
+    xml = '<?xml version="1.0"?>\n<VTKFile type="PolyData" version="1.0" byte_order="LittleEndian" ' \
+        'header_type="UInt64">\n<PolyData>\n<FieldData>\n' + ''.join(tag(*f, field=True) for f in fields) + '</FieldData>\n'
+    n = len(points) // 3
+    xml += '<Piece NumberOfPoints="%d" NumberOfVerts="%d" NumberOfLines="%d" NumberOfStrips="0" NumberOfPolys="%d">\n' % (
+        n, n if vertices else 0, len(lines) // 2, len(triangles) // 3)
+    xml += '<Points>\n' + tag('Float64', 'Points', 3, struct.pack('<%dd' % len(points), *points)) + '</Points>\n'
+    xml += '<PointData%s>\n' % (' Scalars="%s"' % arrays[0][1] if arrays else '') + ''.join(tag(*a) for a in arrays)
+    xml += '</PointData>\n<CellData>\n' + ''.join(tag(*c) for c in cells) + '</CellData>\n'
+    xml += some_cells('Verts', list(range(n)) if vertices else [], 1) + some_cells('Lines', lines, 2)
+    xml += some_cells('Polys', triangles, 3) + '</Piece>\n</PolyData>\n<AppendedData encoding="raw">\n_'
+    return xml.encode() + b''.join(struct.pack('<Q', len(b)) + b for b in blocks) + b'\n</AppendedData>\n</VTKFile>\n'
+
+
+seeds['vtp'] = [vtp([], False, [], [], [], [], []),
+                vtp([0, 1, 2, 3, 4, 5], True, [], [], [('Float64', 'TimeValue', 1, struct.pack('<d', 0.5))],
+                    [('Int32', 'template', 1, struct.pack('<2i', 0, 1)), ('Float32', 'orientation', 4, bytes(32))], []),
+                vtp([0.0] * 9, False, [0, 1], [0, 1, 2, 2, 1, 0], [], [],
+                    [('UInt32', 'wall', 1, struct.pack('<3I', 1, 2, 3))])]
+balls = [(-0.0023, -0.0008, -0.0003, 0.01), (0.0068, 0.0007, -0.0004, 0.008), (-0.0081, 0.0065, 0.0008, 0.006)]
+rows = '\n'.join('%g %g %g %g' % b for b in balls) + '\n'
+head = '# g: 3 spheres of dem-clump 0.1.0\n# frame: %s\n# unit of x y z r: m\n# density [kg/m^3]: 2650\n# mass [kg]: 0.015\n' \
+    '# centre of mass [m]: 0 0 0\n# principal moments of inertia [kg m^2]: 6e-7 9e-7 1e-6\n' \
+    '# principal to mesh frame, position [m]: 1 2 3\n# principal to mesh frame, quaternion w x y z: 0.6 0 0.8 0\n'
+fix = 'fix p1 all particletemplate/multisphere 15485863 atom_type 1 density constant 2650 &\n nspheres 3 ntry 1000000 &\n' \
+    'spheres %s type 1 scale 2 mass 0.015 inertia_tensor 6e-7 0 1e-8 9e-7 0 1e-6 use_density\n'
+seeds['clump_import'] = [
+    b'\0{"schema": "dem-clump/1", "density": 1, "mass": 1, "inertia": [1, 1, 1], "spheres": [[0, 0, 0, 1]]}',
+    b'\1' + ('// g\nName\ng\nBegin centers_and_radii\n' + rows + 'End centers_and_radii\nParticle_center_and_diameter\n'
+             '0 0 0 0.03\nSize\n0.03\nVolume\n5.8e-6\nInertia per unit mass\n4e-5\n6e-5\n7e-5\n').encode(),
+    b'\2' + ('t\n\n3 atoms\n0.015 mass\n0 0 0 com\n6e-7 9e-7 1e-6 0 1e-8 0 inertia\n\nCoords\n\n' +
+             ''.join('%d %g %g %g\n' % (i + 1, *b[:3]) for i, b in enumerate(balls)) + '\nTypes\n\n1 1\n2 1\n3 1\n\nDiameters\n\n' +
+             ''.join('%d %g\n' % (i + 1, 2 * b[3]) for i, b in enumerate(balls)) + '\nMasses\n\n1 0.005\n2 0.005\n3 0.005\n').encode(),
+    b'\4' + rows.encode(), b'\4' + (head % 'mesh').encode() + rows.replace(' ', ',').encode(),
+    b'\4' + (head % 'principal').encode() + rows.replace('\n', '\r\n').encode(),
+    b'\5' + (fix % rows.replace('\n', ' &\n')).encode(), b'\5' + (fix % 'file a').encode(),
+    b'\5' + rows.replace('\n', ' 1\n').encode(), b'\3x,y,z,r\n' + rows.replace(' ', ',').encode()]
 for name, some in seeds.items():
     os.makedirs(os.path.join(sys.argv[1], name), exist_ok=True)
     for i, seed in enumerate(some):

@@ -26,24 +26,49 @@ typedef enum dem_picture_colour {
     DEM_PICTURE_SPIN,
     DEM_PICTURE_COORDINATION,
     DEM_PICTURE_HEIGHT,
+    DEM_PICTURE_VALUES,  ///< `values` of the options
 } dem_picture_colour;
+
+/// Colours of a range of values, in steps that look equal.
+typedef enum dem_picture_map {
+    DEM_PICTURE_MAP_AUTO,       ///< diverging where the range is as far below 0 as above, else ramp
+    DEM_PICTURE_MAP_RAMP,       ///< violet, blue, green, yellow: ever lighter
+    DEM_PICTURE_MAP_DIVERGING,  ///< blue, white, red
+    DEM_PICTURE_MAP_WARM,       ///< purple, red, orange, cream: ever lighter
+    DEM_PICTURE_MAP_GREY,
+} dem_picture_map;
 
 /// A picture of many bodies; see dem_picture_defaults. Borrowed pointers.
 typedef struct dem_picture_options {
     int width, height;  ///< [pixels]
     dem_picture_colour colour;
-    double low, high;            ///< values with the colours of the ends; NAN: those of the bodies
-    bool spheres;                ///< draw the spheres even where the clump keeps the surface of its grain
-    dem_vec3 up;                 ///< against gravity
-    double azimuth_deg;          ///< where it is seen from, about `up`, from x (where that is not up)
-    double elevation_deg;        ///< and above the ground
-    const dem_wall_def *walls;   ///< drawn as glass; a level floor is the ground
-    const dem_wall_view *poses;  ///< [wall_count]; NULL: as at time 0
+    const double *values;  ///< of the bodies, for DEM_PICTURE_VALUES; grey where NAN
+    const char *title;     ///< what these are; NULL: nothing is said
+    const char *unit;      ///< their SI unit, as in "m/s"; NULL: none
+    bool whole;            ///< they are whole numbers
+    dem_picture_map map;
+    double low, high;             ///< values with the colours of the ends; NAN: those of the bodies
+    const unsigned char *hidden;  ///< of the bodies: not 0 where one is left out; NULL: none
+    bool spheres;                 ///< draw the spheres even where the clump keeps the surface of its grain
+    dem_vec3 up;                  ///< against gravity
+    double azimuth_deg;           ///< where it is seen from, about `up`, from x (where that is not up)
+    double elevation_deg;         ///< and above the ground
+    bool parallel;                ///< rays of sight: no perspective
+    double zoom;                  ///< of what fits into the picture [-]
+    dem_vec3 look_at;             ///< what is in its middle [m]; NAN: the middle of everything
+    int samples;                  ///< rays of sight through a pixel where edges are
+    uint8_t background[3];        ///< sky and ground, sRGB
+    const dem_wall_def *walls;    ///< drawn as glass; a level floor is the ground
+    const dem_wall_view *poses;   ///< [wall_count]; NULL: as at time 0
     size_t wall_count;
-    dem_domain_def domain;  ///< walls without an end are cut there, or about the bodies
+    dem_domain_def domain;          ///< walls without an end are cut there, or about the bodies
+    bool labels;                    ///< write a colour bar, a scale bar and the time beside what is drawn
+    double label_size;              ///< height of their capital letters [pixels]; 0: as the picture needs
+    double time;                    ///< [s]; NAN: none is written
+    const char *const *shape_names; ///< [shape_count], for the labels of DEM_PICTURE_SHAPE; NULL: their numbers
 } dem_picture_options;
 
-/// 1200 x 1600, z up, seen from the front and a little from above, no walls.
+/// 1200 x 1600, z up, seen from the front and a little from above, in perspective, white, no walls, no labels.
 DEM_API dem_picture_options dem_picture_defaults(void);
 
 /// Bodies as the surfaces of their grains, or as their spheres (PNG), `shapes` [shape_count]. `path` "-" is standard
