@@ -113,6 +113,8 @@ void cli_job_done(cli_session *session);
 bool cli_interrupted(void);
 /// As cli_error, but clears the progress line first and waits for other messages.
 int cli_session_error(cli_session *session, const dem_error *error);
+/// One line without a level, whether quiet or not.
+void cli_session_say(cli_session *session, const char *text);
 /// `"warnings": [...]`
 void cli_put_warnings(cli_session *session, dem_json_writer *json);
 

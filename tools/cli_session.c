@@ -216,6 +216,14 @@ int cli_session_error(cli_session *session, const dem_error *error)
     return status;
 }
 
+void cli_session_say(cli_session *session, const char *text)
+{
+    pthread_mutex_lock(&session->lock);
+    clear_line(session);
+    print_line(session->tool->name, "", NULL, text);
+    pthread_mutex_unlock(&session->lock);
+}
+
 void cli_put_warnings(cli_session *session, dem_json_writer *json)
 {
     dem_json_open_array(json, "warnings", false);

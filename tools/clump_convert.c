@@ -339,7 +339,7 @@ static int run(const cli_tool *tool, arguments *a, const cli_texts *inputs)
     if (!files.items || !c.results.items || !c.reports || !c.kinds)
         status = cli_error(tool, &(dem_error){.code = DEM_NO_MEMORY, .text = "out of memory; convert fewer files"});
     else
-        status = outputs_sort(tool, &c.job, inputs->count > 1, &files, &table);
+        status = outputs_sort(tool, &c.job, inputs->count > 1, &files, &table, NULL);
     if (status == 0)
         status = convert_files(tool, &c, inputs, table);
     job_results_release(&c.results);

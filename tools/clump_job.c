@@ -5,17 +5,23 @@
 #include <stdlib.h>
 #include <string.h>
 #include <time.h>
+#include <unistd.h>
 
 #include "base/file.h"
 #include "base/hash.h"
 #include "base/memory.h"
 #include "out/export.h"
+#include "out/picture.h"
+
+enum { PICTURE_WIDTH = 240, PICTURE_HEIGHT = 120 };
 
 // the caller's log and progress, with the warnings kept for the report; a warning belongs to the result that is
 // being made, and those of reading and repairing to every body of the file
 typedef struct job {
     const dem_ctx *caller;
     const char *input;
+    const dem_volume *volume;  // NULL: the input is a mesh
+    dem_label label;
     const job_options *options;
     job_results *results;
     dem_ctx ctx;
@@ -64,7 +70,9 @@ static job_result *add_result(job *j, const char *name)
         return NULL;
     job_result *r = &all->items[all->count++];
     *r = (job_result){.input = j->input, .report = j->report, .seconds_read = j->seconds_read,
-                      .seconds_repair = j->seconds_repair};
+                      .seconds_repair = j->seconds_repair, .label = j->label};
+    if (j->volume)
+        r->voxel_volume = (double)j->label.voxels * dem_volume_voxel(j->volume);
     snprintf(r->name, sizeof r->name, "%s", name);
     return r;
 }
@@ -72,10 +80,15 @@ static job_result *add_result(job *j, const char *name)
 static dem_status read_and_repair(job *j, dem_mesh *mesh, dem_error *error)
 {
     const job_options *o = j->options;
-    DEM_TRY(dem_mesh_import(&j->ctx, j->input, mesh, error));
-    if (strcmp(j->input, "-") != 0)
-        DEM_TRY(dem_sha256_file(j->input, j->sha256, error));
-    dem_mesh_scale(mesh, o->unit);
+    if (j->volume) {
+        DEM_TRY(dem_label_surface(&j->ctx, j->volume, &j->label, o->repair.keep, mesh, error));
+        snprintf(j->sha256, sizeof j->sha256, "%s", j->volume->sha256);
+    } else {
+        DEM_TRY(dem_mesh_import(&j->ctx, j->input, mesh, error));
+        if (strcmp(j->input, "-") != 0)
+            DEM_TRY(dem_sha256_file(j->input, j->sha256, error));
+        dem_mesh_scale(mesh, o->unit);
+    }
     j->seconds_read = now() - j->started;
     DEM_TRY(dem_mesh_repair(&j->ctx, mesh, &o->repair, &j->report, error));
     j->seconds_repair = now() - j->started - j->seconds_read;
@@ -86,7 +99,9 @@ static dem_status read_and_repair(job *j, dem_mesh *mesh, dem_error *error)
 static char *output_path(const char *folder, const char *base, const char *suffix)
 {
     char *path = NULL;
-    if (asprintf(&path, "%s%s%s.%s", folder ? folder : "", folder && *folder ? "/" : "", base, suffix) < 0)
+    size_t length = folder ? strlen(folder) : 0;
+    const char *slash = length && folder[length - 1] != '/' ? "/" : "";
+    if (asprintf(&path, "%s%s%s.%s", folder ? folder : "", slash, base, suffix) < 0)
         return NULL;
     return path;
 }
@@ -146,6 +161,15 @@ static dem_status write_outputs(job *j, job_result *r, const dem_mesh *mesh, siz
     return DEM_OK;
 }
 
+// from what the clump keeps: fast however large the mesh is
+static dem_status draw(job *j, job_result *r, dem_error *error)
+{
+    dem_clump_def c = dem_clump_view(r->clump);
+    dem_ctx ctx = {.threads = j->ctx.threads};
+    return dem_picture_render(&ctx, &c.surface, c.balls, c.ball_count, PICTURE_WIDTH, PICTURE_HEIGHT, &r->picture, NULL,
+                              error);
+}
+
 static dem_status finish_body(job *j, job_result *r, dem_mesh *mesh, size_t body, size_t bodies, dem_error *error)
 {
     const job_options *o = j->options;
@@ -158,10 +182,12 @@ static dem_status finish_body(job *j, job_result *r, dem_mesh *mesh, size_t body
     make.name = r->name;
     make.source_mesh = strcmp(j->input, "-") ? dem_file_name(j->input) : "standard input";
     make.source_sha256 = j->sha256;
-    make.source_unit = o->unit_name;
+    make.source_unit = j->volume && !o->unit_given && *j->volume->unit_name ? j->volume->unit_name : o->unit_name;
     DEM_TRY(dem_clump_make(&j->ctx, mesh, &make, &r->clump, &r->pack, error));
     free(r->pack.balls);
     r->pack.balls = NULL;
+    if (o->picture)
+        DEM_TRY(draw(j, r, error));
     return write_outputs(j, r, mesh, body, bodies, error);
 }
 
@@ -209,35 +235,121 @@ static void run_bodies(job *j, dem_mesh *mesh, const char *name)
     free(bodies);
 }
 
-void job_run(const dem_ctx *ctx, const char *input, const char *name, const job_options *options,
-             job_results *results)
+static void run(job *j, const char *name)
 {
-    job j = {.caller = ctx, .input = input, .options = options, .results = results, .started = now()};
-    j.ctx = (dem_ctx){.log = job_log, .progress = job_progress, .user = &j,
-                      .subject = strcmp(input, "-") ? input : "standard input", .threads = ctx->threads};
+    j->started = now();
+    j->ctx = (dem_ctx){.log = job_log, .progress = job_progress, .user = j, .subject = j->caller->subject,
+                       .threads = j->caller->threads};
     dem_mesh mesh = {0};
     dem_error error = {0};
-    dem_status status = read_and_repair(&j, &mesh, &error);
+    dem_status status = read_and_repair(j, &mesh, &error);
     if (status == DEM_OK)
-        run_bodies(&j, &mesh, name);
+        run_bodies(j, &mesh, name);
     else {
-        job_result *r = add_result(&j, name);
+        job_result *r = add_result(j, name);
         if (r) {
             r->status = status;
             r->error = error;
             if (!error.file[0])
-                snprintf(r->error.file, sizeof r->error.file, "%s", j.ctx.subject);
-            r->seconds_total = now() - j.started;
-            r->warnings = j.warnings;
-            r->warning_count = j.warning_count;
-            j.warnings = NULL;
-            j.warning_count = 0;
+                snprintf(r->error.file, sizeof r->error.file, "%s", j->ctx.subject);
+            r->seconds_total = now() - j->started;
+            r->warnings = j->warnings;
+            r->warning_count = j->warning_count;
+            j->warnings = NULL;
+            j->warning_count = 0;
         }
     }
     dem_mesh_free(&mesh);
-    while (j.warning_count)
-        free(j.warnings[--j.warning_count]);
-    free(j.warnings);
+    while (j->warning_count)
+        free(j->warnings[--j->warning_count]);
+    free(j->warnings);
+}
+
+void job_run(const dem_ctx *ctx, const char *input, const char *name, const job_options *options,
+             job_results *results)
+{
+    dem_ctx about = *ctx;
+    about.subject = strcmp(input, "-") ? input : "standard input";
+    run(&(job){.caller = &about, .input = input, .options = options, .results = results}, name);
+}
+
+void job_run_label(const dem_ctx *ctx, const dem_volume *volume, const dem_label *label, const char *input,
+                   const char *name, const job_options *options, job_results *results)
+{
+    char subject[300];
+    snprintf(subject, sizeof subject, "%.260s: label %u", input, label->value);
+    dem_ctx about = *ctx;
+    about.subject = subject;
+    run(&(job){.caller = &about, .input = input, .volume = volume, .label = *label, .options = options,
+               .results = results}, name);
+}
+
+bool job_is_done(const char *name, const job_options *o)
+{
+    bool done = o->folder || o->outputs.count == 0;
+    for (size_t i = 0; done && i < (o->formats.count ? o->formats.count : 1); i++) {
+        const dem_exporter *exporter = dem_exporter_find(o->formats.count ? o->formats.items[i] : "json");
+        char *path = output_path(o->folder, name, exporter->suffix);
+        done = path && access(path, R_OK) == 0;
+        free(path);
+    }
+    return done;
+}
+
+void job_keep(const char *input, const char *name, const dem_volume *volume, const dem_label *label,
+              const job_options *o, job_results *results)
+{
+    job j = {.input = input, .volume = volume, .options = o, .results = results};
+    if (volume)
+        j.label = *label;
+    job_result *r = add_result(&j, name);
+    if (!r)
+        return;
+    r->kept = true;
+    r->solid = (dem_solid){.volume = NAN, .area = NAN};
+    char *path = output_path(o->folder, name, "json");
+    dem_error error;
+    if (path && access(path, R_OK) == 0 && dem_clump_read(path, &r->clump, &error) == DEM_OK && o->picture)
+        draw(&j, r, &error);
+    free(path);
+}
+
+void job_fail(const char *input, const char *name, const dem_error *error, job_results *results)
+{
+    job j = {.input = input, .results = results};
+    job_result *r = add_result(&j, name);
+    if (r) {
+        r->status = error->code;
+        r->error = *error;
+    }
+}
+
+void job_results_slim(job_results *results)
+{
+    for (size_t i = 0; i < results->count; i++) {
+        job_result *r = &results->items[i];
+        dem_image_free(&r->picture);
+        if (!r->clump)
+            continue;
+        dem_clump_def def = dem_clump_view(r->clump);
+        dem_clump *slim;
+        dem_error error;
+        def.surface = (dem_mesh){0};
+        if (dem_clump_create(&def, &slim, &error) == DEM_OK) {
+            dem_clump_destroy(r->clump);
+            r->clump = slim;
+        }
+    }
+}
+
+void job_results_move(job_results *to, job_results *from)
+{
+    for (size_t i = 0; i < from->count; i++) {
+        if (!dem_grow(&to->items, &to->capacity, to->count, sizeof *to->items))
+            return;
+        to->items[to->count++] = from->items[i];
+        from->items[i] = (job_result){0};
+    }
 }
 
 void job_results_release(job_results *results)
@@ -245,6 +357,7 @@ void job_results_release(job_results *results)
     for (size_t i = 0; i < results->count; i++) {
         job_result *r = &results->items[i];
         dem_clump_destroy(r->clump);
+        dem_image_free(&r->picture);
         for (size_t k = 0; k < r->warning_count; k++)
             free(r->warnings[k]);
         for (size_t k = 0; k < r->output_count; k++)

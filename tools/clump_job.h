@@ -5,7 +5,9 @@
 #include "dem/dem.h"
 
 #include "cli.h"
+#include "mesh/labels.h"
 #include "out/export.h"
+#include "out/png.h"
 
 /// What the command line asks of every input.
 typedef struct job_options {
@@ -14,6 +16,7 @@ typedef struct job_options {
     bool split;
     double unit;                   ///< length of one unit of the file [m]
     const char *unit_name;
+    bool unit_given;               ///< by --unit
     double size;                   ///< equivalent diameter to rescale to [m]; 0: as it is
     dem_frame frame;               ///< of the formats that can be in either
     cli_texts outputs;             ///< files; empty: NAME.json in the current folder
@@ -21,6 +24,7 @@ typedef struct job_options {
     bool into_folder;              ///< --exports: -o names a folder, also one that is not there yet
     bool every_format;             ///< `formats` are all there are: leave out what this build cannot write
     const char *folder;            ///< where the files of several grains go; NULL: single
+    bool picture;                  ///< also a small picture of each grain beside its clump
 } job_options;
 
 /// What came of one grain: a file, or one body of it with --split.
@@ -32,6 +36,10 @@ typedef struct job_result {
     dem_mesh_report report;
     dem_solid solid;               ///< of the mesh, at unit density
     dem_clump *clump;              ///< NULL where it failed
+    bool kept;                     ///< not made but found; then `report` and `solid` are not known
+    dem_label label;               ///< of a label volume; voxels 0: a mesh
+    double voxel_volume;           ///< of all voxels of the label [m^3]
+    dem_image picture;
     dem_pack pack;                 ///< without its balls
     double seconds_read, seconds_repair, seconds_total;
     char **warnings;
@@ -48,6 +56,22 @@ typedef struct job_results {
 /// Runs one input and appends its results (at least one). `name` is the base name of its output files.
 void job_run(const dem_ctx *ctx, const char *input, const char *name, const job_options *options,
              job_results *results);
+/// The same of one label of a volume, whose file is `input`.
+void job_run_label(const dem_ctx *ctx, const dem_volume *volume, const dem_label *label, const char *input,
+                   const char *name, const job_options *options, job_results *results);
+
+/// Whether all files of a grain of a batch are there.
+bool job_is_done(const char *name, const job_options *options);
+/// A result for one that is, read from its clump file if there is one; `volume` NULL: of a mesh.
+void job_keep(const char *input, const char *name, const dem_volume *volume, const dem_label *label,
+              const job_options *options, job_results *results);
+/// A result for an input that did not even come to a grain.
+void job_fail(const char *input, const char *name, const dem_error *error, job_results *results);
+
+/// Drops the surfaces kept in the clumps, and the pictures.
+void job_results_slim(job_results *results);
+/// Moves what `from` holds behind what `to` holds.
+void job_results_move(job_results *to, job_results *from);
 void job_results_release(job_results *results);
 
 /// Writes a clump that is there already as `options` ask for; `mesh` (may be NULL) is for the formats that show it.

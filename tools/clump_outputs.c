@@ -77,7 +77,7 @@ static int add_file(const cli_tool *tool, const job_options *o, const char *path
 }
 
 static int sort_one(const cli_tool *tool, job_options *o, bool several, const char *path, cli_texts *files,
-                    const char **table)
+                    const char **table, const char **sheet)
 {
     const dem_exporter *exporter = dem_exporter_of_file(path);
     bool standard = strcmp(path, "-") == 0;
@@ -85,6 +85,8 @@ static int sort_one(const cli_tool *tool, job_options *o, bool several, const ch
         o->folder = path;
     else if (!exporter && dem_file_has_suffix(path, "csv"))
         *table = path;
+    else if (several && sheet && dem_file_has_suffix(path, "png"))
+        *sheet = path;
     else if (o->into_folder && (standard || exporter))
         return cli_wrong_usage(tool, "--exports writes into a folder, '%s' is a file; name a folder with -o DIR", path);
     else if (o->into_folder)
@@ -96,7 +98,8 @@ static int sort_one(const cli_tool *tool, job_options *o, bool several, const ch
     return 0;
 }
 
-int outputs_sort(const cli_tool *tool, job_options *o, bool several, cli_texts *files, const char **table)
+int outputs_sort(const cli_tool *tool, job_options *o, bool several, cli_texts *files, const char **table,
+                 const char **sheet)
 {
     char known[256];
     dem_error error;
@@ -105,7 +108,7 @@ int outputs_sort(const cli_tool *tool, job_options *o, bool several, cli_texts *
             return cli_wrong_usage(tool, "unknown format '%s'; use one of:%s", o->formats.items[i],
                                    format_names(known));
     for (size_t i = 0; i < o->outputs.count; i++) {
-        int status = sort_one(tool, o, several, o->outputs.items[i], files, table);
+        int status = sort_one(tool, o, several, o->outputs.items[i], files, table, sheet);
         if (status)
             return status;
     }

@@ -40,6 +40,11 @@ static void text_mesh(dem_buffer *out, const job_result *r)
     dem_buffer_print(out, "  mesh      %zu triangles, %zu vertices, %zu %s%s", m->triangles, m->vertices, m->bodies,
                      m->bodies == 1 ? "body" : "bodies", m->wrapped ? ", wrapped" : "");
     dem_buffer_print(out, "; %s\n", m->warnings ? "repaired, see the warnings" : "closed, nothing to repair");
+    if (r->pack.stand_in_triangles)
+        dem_buffer_print(out,
+                         "            spheres were sought in %zu triangles that stand for them: volume %+.3f %%, farthest "
+                         "vertex %.3f %% of d_eq\n",
+                         r->pack.stand_in_triangles, 100 * r->pack.stand_in_volume, 100 * r->pack.stand_in_distance);
 }
 
 static void text_shape(dem_buffer *out, const dem_shape *s)
@@ -180,6 +185,13 @@ static void json_clump(dem_json_writer *w, const job_result *r)
     dem_json_put_bool(w, "reached", r->pack.reached);
     dem_json_put_string(w, "moments", moments_text[r->pack.moments]);
     dem_json_put_number(w, "moment_residual", r->pack.moment_residual);
+    if (r->pack.stand_in_triangles) {
+        dem_json_open_object(w, "stand_in");
+        dem_json_put_whole(w, "triangles", (int64_t)r->pack.stand_in_triangles);
+        dem_json_put_number(w, "volume_change", r->pack.stand_in_volume);
+        dem_json_put_number(w, "distance", r->pack.stand_in_distance);
+        dem_json_close(w, '}');
+    }
     dem_clump_put_figures(w, &c);
     dem_json_open_object(w, "solid");
     dem_json_put_number(w, "volume", r->solid.volume);
@@ -198,7 +210,12 @@ static void json_result(dem_json_writer *w, const job_result *r)
     dem_json_put_string(w, "input", r->input);
     if (!r->clump)
         dem_json_put_string(w, "name", r->name);
-    dem_json_put_string(w, "status", r->status == DEM_OK ? "done" : "failed");
+    dem_json_put_string(w, "status", r->kept ? "kept" : r->status == DEM_OK ? "done" : "failed");
+    if (r->label.voxels) {
+        dem_json_put_whole(w, "label", r->label.value);
+        dem_json_put_whole(w, "voxels", (int64_t)r->label.voxels);
+        dem_json_put_number(w, "voxel_volume", r->voxel_volume);
+    }
     if (r->status != DEM_OK)
         report_put_error(w, &r->error);
     if (r->clump)
@@ -260,14 +277,27 @@ static size_t listed_figures(const dem_figure *list, size_t count, void *values,
     return count;
 }
 
-static size_t row_figures(const job_result *r, figure *f)
+// as the volume's header has it, and where the grain lies in the image
+static size_t label_figures(const job_result *r, const dem_clump_def *c, figure *f)
+{
+    const figure all[] = {{"label", "", (double)r->label.value},
+                          {"voxels", "", (double)r->label.voxels},
+                          {"voxel_volume", "m3", r->voxel_volume},
+                          {"centre_x", "m", c->position.x},
+                          {"centre_y", "m", c->position.y},
+                          {"centre_z", "m", c->position.z}};
+    memcpy(f, all, sizeof all);
+    return sizeof all / sizeof *all;
+}
+
+static size_t row_figures(const job_result *r, bool labels, figure *f)
 {
     dem_clump_def c = {0};
     if (r->clump)
         c = dem_clump_view(r->clump);
     size_t n = 0;
     f[n++] = (figure){"spheres", "", (double)c.ball_count};
-    f[n++] = (figure){"triangles", "", (double)r->report.triangles};
+    f[n++] = (figure){"triangles", "", r->kept ? NAN : (double)r->report.triangles};
     f[n++] = (figure){"volume", "m3", r->solid.volume};
     f[n++] = (figure){"area", "m2", r->solid.area};
     f[n++] = (figure){"mass", "kg", c.mass};
@@ -278,34 +308,43 @@ static size_t row_figures(const job_result *r, figure *f)
     n += listed_figures(dem_fidelity_figures, DEM_FIDELITY_FIGURES, &c.fidelity, f + n);
     f[n++] = (figure){"pieces", "", (double)c.fidelity.pieces};
     f[n++] = (figure){"union_volume", "m3", c.union_volume};
-    f[n++] = (figure){"seconds_pack", "s", r->pack.seconds};
-    f[n++] = (figure){"seconds_total", "s", r->seconds_total};
+    f[n++] = (figure){"seconds_pack", "s", r->kept ? c.seconds : r->pack.seconds};
+    f[n++] = (figure){"seconds_total", "s", r->kept ? NAN : r->seconds_total};
+    if (labels)
+        n += label_figures(r, &c, f + n);
     return n;
 }
 
-void report_csv(dem_buffer *out, const job_results *results)
+void report_csv_header(dem_buffer *out, bool labels)
 {
     figure figures[3 * MAX_FIGURES];
     job_result none = {0};
-    size_t count = row_figures(&none, figures);
+    size_t count = row_figures(&none, labels, figures);
     dem_buffer_text(out, "input,name,status");
     for (size_t i = 0; i < count; i++)
         dem_buffer_print(out, ",%s%s%s", figures[i].name, *figures[i].unit ? "_" : "", figures[i].unit);
     dem_buffer_text(out, ",moments,warnings,message\n");
-    for (size_t k = 0; k < results->count; k++) {
-        const job_result *r = &results->items[k];
-        report_csv_text(out, r->input);
+}
+
+void report_csv_start(dem_buffer *out, const job_result *r, const char *status)
+{
+    report_csv_text(out, r->input);
+    dem_buffer_text(out, ",");
+    report_csv_text(out, r->name);
+    dem_buffer_print(out, ",%s,", status);
+}
+
+void report_csv_row(dem_buffer *out, const job_result *r, bool labels)
+{
+    figure figures[3 * MAX_FIGURES];
+    size_t count = row_figures(r, labels, figures);
+    report_csv_start(out, r, r->kept ? "kept" : r->status == DEM_OK ? "done" : "failed");
+    for (size_t i = 0; i < count; i++) {
+        if (r->clump && isfinite(figures[i].value))
+            dem_buffer_number(out, figures[i].value, 10);
         dem_buffer_text(out, ",");
-        report_csv_text(out, r->name);
-        dem_buffer_text(out, r->status == DEM_OK ? ",done" : ",failed");
-        row_figures(r, figures);
-        for (size_t i = 0; i < count; i++) {
-            dem_buffer_text(out, ",");
-            if (r->clump && isfinite(figures[i].value))
-                dem_buffer_number(out, figures[i].value, 10);
-        }
-        dem_buffer_print(out, ",%s,%zu,", r->clump ? moments_text[r->pack.moments] : "", r->warning_count);
-        report_csv_text(out, r->status == DEM_OK ? "" : r->error.text);
-        dem_buffer_text(out, "\n");
     }
+    dem_buffer_print(out, "%s,%zu,", r->clump && !r->kept ? moments_text[r->pack.moments] : "", r->warning_count);
+    report_csv_text(out, r->status == DEM_OK ? "" : r->error.text);
+    dem_buffer_text(out, "\n");
 }

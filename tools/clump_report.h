@@ -11,8 +11,11 @@ void report_text(dem_buffer *out, const job_result *result, const job_options *o
 /// One JSON object: of the grain alone, or {"grains": [...], "failed": n} for several.
 void report_json(dem_buffer *out, const job_results *results, bool several);
 
-/// A header line and one row per grain; SI units stand in the header.
-void report_csv(dem_buffer *out, const job_results *results);
+/// A header line, and a row per grain; SI units stand in the header. `labels`: with what label volumes tell.
+void report_csv_header(dem_buffer *out, bool labels);
+void report_csv_row(dem_buffer *out, const job_result *result, bool labels);
+/// What the row of a grain starts with: its input, its name and a status.
+void report_csv_start(dem_buffer *out, const job_result *result, const char *status);
 
 /// Pieces of these: a row of a table that compares two solids (NAN: unknown), a cell of a CSV table, texts and an error
 /// in JSON.

@@ -9,8 +9,11 @@
 #include "base/units.h"
 #include "cli.h"
 #include "clump/pack.h"
+#include "clump_batch.h"
+#include "clump_inputs.h"
 #include "clump_convert.h"
 #include "clump_job.h"
+#include "clump_labels.h"
 #include "clump_outputs.h"
 #include "clump_report.h"
 #include "clump_verify.h"
@@ -25,19 +28,25 @@ typedef struct arguments {
     bool inscribed, outer, split, methods;
     const char *method, *unit, *exports;
     cli_texts outputs, formats;
+    // of many grains
+    const char *list, *sheet, *raw, *spacing, *labels;
+    bool recursive, resume, drop_border;
+    long min_voxels;
 } arguments;
 
 static const char about[] =
     "Packs spheres into closed triangle meshes of grains (STL, OBJ, PLY, OFF; glTF, 3MF and others through assimp), "
     "repairs the mesh where needed, and gives each clump the grain's mass properties and its error. '-' reads "
-    "standard input. Several meshes are a batch.";
+    "standard input. Several meshes are a batch, also as the meshes of a folder or of a list, and so are the labels of "
+    "a segmented image (NRRD, MetaImage, raw voxels): one clump for each.";
 
 static const char epilogue[] = "Examples:\n"
                                "  dem-clump grain.stl                          50 spheres -> grain.json\n"
                                "  dem-clump grain.stl --unit mm -n 100 -o grain.json -o grain.png\n"
                                "  dem-clump grain.obj -e 3                     as many spheres as a 3 % gap needs\n"
                                "  dem-clump grain.obj -o - --format xyzr       spheres on standard output\n"
-                               "  dem-clump scans/*.stl -o clumps/             a batch; the table on standard output\n"
+                               "  dem-clump scans/ -o clumps/ -o all.csv -o all.png      a folder; the table, a picture of all\n"
+                               "  dem-clump scan.nrrd --unit mm -o clumps/     each label of a CT image\n"
                                "  dem-clump grain.obj --exports all -o out     for every program it knows\n"
                                "  dem-clump verify grain.json                  what mass these programs really use\n"
                                "  dem-clump convert rock.mol -o rock.json      a clump of another program\n"
@@ -58,6 +67,7 @@ static arguments default_arguments(void)
                        .effort = make.pack.effort,
                        .moments = make.pack.moments,
                        .mass_from = make.mass_from,
+                       .min_voxels = 500,
                        .method = make.pack.method};
 }
 
@@ -81,7 +91,7 @@ static int list_methods(const cli_tool *tool)
 static job_options job_options_from(const arguments *a)
 {
     job_options o = {.make = dem_make_defaults(), .split = a->split, .size = a->size, .unit = 1,
-                     .unit_name = a->unit ? a->unit : "m", .frame = (dem_frame)a->frame, .outputs = a->outputs,
+                     .unit_name = a->unit ? a->unit : "m", .unit_given = a->unit != NULL, .frame = (dem_frame)a->frame, .outputs = a->outputs,
                      .formats = a->formats};
     o.make.density = a->density;
     o.make.mass_from = (dem_mass_source)a->mass_from;
@@ -100,116 +110,103 @@ static job_options job_options_from(const arguments *a)
     return o;
 }
 
-// output names of a batch: the input's name without folder and suffix, numbered where two are the same
-static char **grain_names(const cli_texts *inputs)
-{
-    char **names = calloc(inputs->count, sizeof *names);
-    for (size_t i = 0; names && i < inputs->count; i++) {
-        const char *file = strcmp(inputs->items[i], "-") ? dem_file_name(inputs->items[i]) : "grain";
-        const char *dot = strrchr(file, '.');
-        int stem = (int)(dot && dot != file ? dot - file : (long)strlen(file)), same = 1;
-        for (size_t k = 0; k < i; k++) {
-            const char *other = dem_file_name(inputs->items[k]), *other_dot = strrchr(other, '.');
-            int other_stem = (int)(other_dot && other_dot != other ? other_dot - other : (long)strlen(other));
-            same += other_stem == stem && strncmp(other, file, (size_t)stem) == 0;
-        }
-        char number[16] = "";
-        if (same > 1)
-            snprintf(number, sizeof number, "_%d", same);
-        if (asprintf(&names[i], "%.*s%s", stem, file, number) < 0)
-            names[i] = NULL;
-    }
-    return names;
-}
-
-// grains run side by side, each on one core; alone, a grain gets them all
-static void run_grains(cli_session *session, const cli_texts *inputs, char **names, const job_options *options,
-                       job_results *results)
-{
-    job_results *each = calloc(inputs->count, sizeof *each);
-    int count = (int)inputs->count;
-    dem_ctx all = cli_ctx(session, NULL);
-    session->jobs = inputs->count;
-    if (!each)
-        return;
-#pragma omp parallel for schedule(dynamic, 1) num_threads(dem_threads(&all)) if (count > 1)
-    for (int i = 0; i < count; i++) {
-        dem_ctx ctx = cli_ctx(session, inputs->items[i]);
-        if (count > 1)
-            ctx.threads = 1;
-        if (!cli_interrupted() && names[i])
-            job_run(&ctx, inputs->items[i], names[i], options, &each[i]);
-        for (size_t k = 0; k < each[i].count; k++)
-            if (each[i].items[k].status != DEM_OK)
-                cli_session_error(session, &each[i].items[k].error);
-        cli_job_done(session);
-    }
-    for (int i = 0; i < count; i++) {
-        for (size_t k = 0; k < each[i].count; k++)
-            if (dem_grow(&results->items, &results->capacity, results->count, sizeof *results->items))
-                results->items[results->count++] = each[i].items[k];
-        free(each[i].items);
-    }
-    free(each);
-}
-
+// the screen or the JSON object at the end
 static int write_report(const cli_tool *tool, const arguments *a, const job_options *options,
-                        const job_results *results, bool several, const char *table)
+                        const job_results *results, bool several)
 {
     dem_buffer text = {0};
-    dem_error error;
     bool to_stdout = false;
     for (size_t i = 0; i < options->outputs.count; i++)
         to_stdout |= strcmp(options->outputs.items[i], "-") == 0;
-    if (table) {
-        report_csv(&text, results);
-        if (dem_file_write_buffer(table, &text, &error) != DEM_OK)
-            return cli_error(tool, &error);
-    }
     if (a->common.json)
-        report_json(&text, results, several);
-    else if (to_stdout || a->common.quiet)
-        return 0;
-    else if (several && !table)
-        report_csv(&text, results);
-    else if (!several)
+        report_json(&text, results, several || a->split);
+    else if (!to_stdout && !a->common.quiet && !several && !a->split)
         for (size_t i = 0; i < results->count; i++)
             report_text(&text, &results->items[i], options);
     return text.size ? cli_print(tool, &text) : 0;
 }
 
-static int run(const cli_tool *tool, arguments *a, const cli_texts *inputs)
+// "5 um" or "5um,5um,10um"
+static dem_status parse_spacing(const char *text, dem_vec3 *spacing, dem_error *error)
+{
+    double x[3];
+    char word[64];
+    int count = 0;
+    for (const char *at = text; at; count++) {
+        size_t length = strcspn(at, ",");
+        if (count == 3 || length >= sizeof word)
+            return dem_fail(error, DEM_USAGE, "'%.60s' is no length or three as in 5um,5um,10um", text);
+        snprintf(word, sizeof word, "%.*s", (int)length, at);
+        DEM_TRY(dem_quantity(word, DEM_DIMENSION_LENGTH, &x[count], error));
+        if (!(x[count] > 0 && x[count] < 1e20))
+            return dem_fail(error, DEM_USAGE, "'%.60s' is not positive", word);
+        at = at[length] ? at + length + 1 : NULL;
+    }
+    if (count == 2)
+        return dem_fail(error, DEM_USAGE, "'%.60s' is no length or three as in 5um,5um,10um", text);
+    *spacing = count == 1 ? (dem_vec3){x[0], x[0], x[0]} : (dem_vec3){x[0], x[1], x[2]};
+    return DEM_OK;
+}
+
+// what is asked of many grains; says what does not go together
+static int batch_options_from(const cli_tool *tool, const arguments *a, batch_options *batch)
+{
+    dem_error error;
+    *batch = (batch_options){.sheet = a->sheet, .resume = a->resume, .labels = a->labels, .min_voxels = a->min_voxels,
+                             .drop_border = a->drop_border};
+    if (a->raw && dem_volume_raw_parse(a->raw, &batch->raw, &error) != DEM_OK)
+        return cli_wrong_usage(tool, "--raw: %s", error.text);
+    if (a->spacing && parse_spacing(a->spacing, &batch->spacing, &error) != DEM_OK)
+        return cli_wrong_usage(tool, "--spacing: %s", error.text);
+    if (a->labels && labels_parse(a->labels, &error) != DEM_OK)
+        return cli_wrong_usage(tool, "--labels: %s", error.text);
+    if (a->resume && a->split)
+        return cli_wrong_usage(tool, "--resume cannot tell what --split has written; leave one out");
+    return 0;
+}
+
+static int run(const cli_tool *tool, arguments *a, const clump_inputs *inputs)
 {
     job_options options = job_options_from(a);
+    batch_options batch;
     dem_error error;
-    const char *table = NULL;
-    bool several = inputs->count > 1;
+    bool several = inputs->several;
     if (a->unit && dem_unit(a->unit, DEM_DIMENSION_LENGTH, &options.unit, &error) != DEM_OK)
         return cli_wrong_usage(tool, "--unit: %s", error.text);
     if (a->inscribed && a->outer)
         return cli_wrong_usage(tool, "--inscribed and --outer exclude each other");
-    int status = a->exports ? outputs_exports(tool, a->exports, &options, &a->formats) : 0;
+    int status = batch_options_from(tool, a, &batch);
+    if (status == 0 && a->exports)
+        status = outputs_exports(tool, a->exports, &options, &a->formats);
     if (status != 0)
         return status;
     cli_texts files = {.items = calloc(a->outputs.count + 1, sizeof *files.items)};
-    char **names = grain_names(inputs);
-    status = files.items && names ? outputs_sort(tool, &options, several, &files, &table)
-                                  : cli_error(tool, &(dem_error){.code = DEM_NO_MEMORY, .text = "out of memory"});
+    status = files.items ? outputs_sort(tool, &options, several, &files, &batch.table, &batch.sheet)
+                         : cli_error(tool, &(dem_error){.code = DEM_NO_MEMORY, .text = "out of memory"});
     if (status == 0) {
-        cli_session session;
         job_results results = {0};
-        cli_begin(&session, tool, &a->common);
-        run_grains(&session, inputs, names, &options, &results);
-        cli_end(&session);
-        status = write_report(tool, a, &options, &results, several || a->split, table);
-        if (status == 0)
-            status = outputs_status(&results, several);
+        if (!batch.table && (several || a->split) && !a->common.json && !a->common.quiet)
+            batch.table = "-";
+        batch.keep_results = a->common.json || !several;
+        options.picture = batch.sheet != NULL;
+        status = batch_run(tool, &a->common, inputs, &options, &batch, &results);
+        int printed = write_report(tool, a, &options, &results, several);
+        status = status ? status : printed;
         job_results_release(&results);
     }
-    for (size_t i = 0; names && i < inputs->count; i++)
-        free(names[i]);
-    free(names);
     free(files.items);
+    return status;
+}
+
+// operands, folders and the list are made one
+static int run_operands(const cli_tool *tool, arguments *a, const cli_texts *operands)
+{
+    clump_inputs inputs;
+    dem_error error;
+    const clump_input_options options = {.list = a->list, .recursive = a->recursive, .raw = a->raw != NULL};
+    int status = clump_inputs_collect(operands, &options, &inputs, &error) == DEM_OK ? run(tool, a, &inputs)
+                                                                                    : cli_error(tool, &error);
+    clump_inputs_release(&inputs);
     return status;
 }
 
@@ -253,6 +250,22 @@ int main(int argc, char **argv)
         {"keep", 0, CLI_CHOICE, keep_names, "what to do with several separate bodies (default one: refuse)", &a.keep, 0,
          0},
         {"split", 0, CLI_FLAG, NULL, "one clump per body", &a.split, 0, 0},
+        {.help = "Many grains"},
+        {"list", 0, CLI_TEXT, "FILE", "also the files it names, one path per line (from its folder); '-': standard input",
+         &a.list, 0, 0},
+        {"recursive", 0, CLI_FLAG, NULL, "of a folder also the folders in it", &a.recursive, 0, 0},
+        {"sheet", 0, CLI_TEXT, "FILE", "one picture of all grains beside their clumps, PNG (with several, -o FILE.png is "
+         "the same)", &a.sheet, 0, 0},
+        {"resume", 0, CLI_FLAG, NULL, "leave out the grains whose files are there, whatever options made them", &a.resume, 0,
+         0},
+        {.help = "Images of labels"},
+        {"labels", 0, CLI_TEXT, "LIST", "only these, as 3,7,10-20 (default: all but 0, the background)", &a.labels, 0, 0},
+        {"min-voxels", 0, CLI_WHOLE, "N", "leave out labels of fewer voxels (default 500)", &a.min_voxels, 1, 0x1p53},
+        {"drop-border", 0, CLI_FLAG, NULL, "leave out labels that the border of the image cuts", &a.drop_border, 0, 0},
+        {"spacing", 0, CLI_TEXT, "D", "size of a voxel, as 5um or 5um,5um,10um (default: as the file says)", &a.spacing, 0,
+         0},
+        {"raw", 0, CLI_TEXT, "SIZES", "the files have no header but are as '512x512x300 uint16 little skip 0'", &a.raw, 0,
+         0},
         {.help = "Output"},
         {"output", 'o', CLI_TEXTS, "FILE", "where to; the format follows the name; repeatable (default NAME.json)",
          &a.outputs, 0, 0},
@@ -265,16 +278,16 @@ int main(int argc, char **argv)
          "frame of xyzr, vtp, stl (default principal; mesh: the file's own, in metres)", &a.frame, 0, 0},
         CLI_COMMON_OPTIONS(a.common),
     };
-    const cli_tool tool = {"dem-clump", "MESH... [options]", about, options, sizeof options / sizeof *options, epilogue};
+    const cli_tool tool = {"dem-clump", "MESH|FOLDER|IMAGE... [options]", about, options, sizeof options / sizeof *options, epilogue};
     cli_texts inputs = {0};
     int status;
     if (cli_parse(&tool, argc, argv, &inputs, &status) == CLI_GO) {
         if (a.methods)
             status = list_methods(&tool);
-        else if (inputs.count == 0)
+        else if (inputs.count == 0 && !a.list)
             status = cli_wrong_usage(&tool, "no mesh given");
         else
-            status = run(&tool, &a, &inputs);
+            status = run_operands(&tool, &a, &inputs);
     }
     cli_texts_release(&inputs);
     cli_texts_release(&a.outputs);

@@ -9,7 +9,7 @@
 
 // A tree takes about 100 bytes per triangle. It only serves medial balls and clearances, for which surface detail
 // below a hundredth of d_eq is noise, so a larger mesh is replaced by its vertices clustered on a grid.
-enum { MOST_TREE_TRIANGLES = 100000, MOST_CELLS = 100000, CELL_SLOTS = 1 << 18 };
+enum { MOST_TREE_TRIANGLES = 100000, MOST_CELLS = 100000, CELL_SLOTS = 1 << 18, DISTANCE_SAMPLES = 50000 };
 
 // no axis is within 20 degrees of a coordinate plane's normal, nor of the diagonals
 static const dem_quat turn = {0.8342, 0.3137, -0.3714, 0.2621};
@@ -195,6 +195,22 @@ dem_status dem_pack_grain_open(const dem_mesh *mesh, dem_pack_grain *grain, dem_
     if (status != DEM_OK)
         dem_pack_grain_close(grain);
     return status;
+}
+
+dem_pack_stand_in dem_pack_grain_stand_in(const dem_pack_grain *grain)
+{
+    const dem_mesh *mesh = grain->mesh;
+    if (grain->shell.triangle_count == mesh->triangle_count)
+        return (dem_pack_stand_in){0};
+    dem_pack_stand_in in = {.triangles = grain->shell.triangle_count};
+    in.volume_change = dem_mesh_moments(&grain->shell, v3(0, 0, 0)).volume / grain->moments.volume - 1;
+    size_t step = 1 + mesh->vertex_count / DISTANCE_SAMPLES;
+    for (size_t i = 0; i < mesh->vertex_count; i += step) {
+        dem_vec3 p = dem_pack_grain_enter(grain, mesh->vertices[i]);
+        if (!dem_tree_within(&grain->tree, p, in.distance))
+            in.distance = dem_tree_closest(&grain->tree, p, INFINITY, NULL, NULL);
+    }
+    return in;
 }
 
 void dem_pack_grain_close(dem_pack_grain *grain)

@@ -20,6 +20,14 @@ typedef struct dem_pack_grain {
 dem_status dem_pack_grain_open(const dem_mesh *mesh, dem_pack_grain *grain, dem_error *error);
 void dem_pack_grain_close(dem_pack_grain *grain);
 
+/// How the stand-in of a large mesh differs from it; nothing for a mesh that stands for itself.
+typedef struct dem_pack_stand_in {
+    size_t triangles;      ///< 0: there is none
+    double volume_change;  ///< relative to the mesh [-]
+    double distance;       ///< farthest of some 50,000 vertices of the mesh from it, over d_eq [-]
+} dem_pack_stand_in;
+dem_pack_stand_in dem_pack_grain_stand_in(const dem_pack_grain *grain);
+
 /// Mesh frame to the packer's frame and back.
 dem_vec3 dem_pack_grain_enter(const dem_pack_grain *grain, dem_vec3 point);
 dem_ball dem_pack_grain_leave(const dem_pack_grain *grain, dem_ball ball);

@@ -85,6 +85,12 @@ static dem_status run_optimal(const dem_ctx *ctx, const dem_mesh *mesh, const de
     DEM_TRY(dem_pack_grain_open(mesh, &grain, error));
     dem_status status = options->gap > 0 ? dem_pack_target(ctx, &grain, &settled, pack_count, pack, error)
                                          : pack_count(ctx, &grain, &settled, pack, error);
+    if (status == DEM_OK) {
+        dem_pack_stand_in in = dem_pack_grain_stand_in(&grain);
+        pack->stand_in_triangles = in.triangles;
+        pack->stand_in_volume = in.volume_change;
+        pack->stand_in_distance = in.distance;
+    }
     dem_pack_grain_close(&grain);
     return status;
 }

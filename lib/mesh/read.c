@@ -90,7 +90,7 @@ static const char *known_stranger(const char *bytes, size_t size)
         {"\x89PNG", "is a PNG picture, not a mesh"},
         {"\xff\xd8\xff", "is a JPEG picture, not a mesh"},
         {"GIF8", "is a GIF picture, not a mesh"},
-        {"II*", "is a TIFF picture, not a mesh; make a surface of the image stack first"},
+        {"II*", "is a TIFF picture, not a mesh; save the stack of labels as NRRD or MetaImage"},
         {"%PDF", "is a PDF document, not a mesh"},
         {"\x7f"
          "ELF",

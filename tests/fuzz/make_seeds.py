@@ -1,10 +1,12 @@
 #!/usr/bin/python3
 """Writes small valid files to start the fuzzers from: make_seeds.py FOLDER -> FOLDER/{stl,obj,ply,off,sniff,scene,csv,
-checkpoint,vtp,clump_import}/"""
+checkpoint,vtp,clump_import,volume}/"""
+import gzip
 import hashlib
 import os
 import struct
 import sys
+import zlib
 
 corners = [(0, 0, 0), (1, 0, 0), (1, 1, 0), (0, 1, 0), (0, 0, 1), (1, 0, 1), (1, 1, 1), (0, 1, 1)]
 sides = [(3, 2, 1, 0), (4, 5, 6, 7), (0, 1, 5, 4), (1, 2, 6, 5), (2, 3, 7, 6), (3, 0, 4, 7)]
@@ -73,6 +75,18 @@ seeds['scene'] = [scene.encode(), (head % ('hertz', '') + tail).encode(), b'{"sc
                   b'\xfftime.end=5 ms\n' + scene.encode(), b'\xffbodies[0].scale=2\n{"schema": "dem-scene/1"}']
 seeds['csv'] = [b'shape,x,y,z\nrock,1,2,3\n', b'\xef\xbb\xbf# c\r\nshape,x,y,z,qw,qx,qy,qz,vx,vy,vz,wx,wy,wz,scale,id\r\n'
                 b'"a, ""b""",1.2345678901234567,-2e-3,3,1,2,3,4,5,6,7,8,9,10,0.5,"x"\r\n']
+nrrd = 'NRRD0004\n# c\ntype: %s\ndimension: 3\nsizes: 4 3 2\nencoding: %s\nendian: %s\n%s\n'
+cells = [0, 1, 1, 0, 1, 1, 2, 0, 0, 2, 2, 2, 1, 1, 1, 0, 1, 1, 1, 1, 0, 0, 2, 2]
+meta = 'NDims = 3\nDimSize = 4 3 2\nElementType = %s\nElementSpacing = 1 2 3\nOffset = 1 1 1\nCompressedData = %s\n' + \
+    'TransformMatrix = 0 1 0 1 0 0 0 0 1\nElementDataFile = LOCAL\n'
+seeds['volume'] = [
+    (nrrd % ('uint8', 'raw', 'little', 'spacings: 1 1 2\n')).encode() + bytes(cells),
+    (nrrd % ('short', 'raw', 'big', 'space directions: (1,0,0) (0,1,0) (0,0,-1)\nspace origin: (1,2,3)\n'
+             'space units: "mm" "mm" "mm"\n')).encode() + struct.pack('>24h', *cells),
+    (nrrd % ('float', 'gzip', 'little', 'byte skip: 0\n')).encode() + gzip.compress(struct.pack('<24f', *cells)),
+    (nrrd % ('uint64', 'ascii', 'little', 'k:=v\n')).encode() + b' '.join(b'%d' % c for c in cells),
+    (meta % ('MET_UCHAR', 'False')).encode() + bytes(cells),
+    (meta % ('MET_INT', 'True')).encode() + zlib.compress(struct.pack('<24i', *cells)), b'R\x13\x00' + bytes(cells[:8])]
 
 
 def vtp(points, vertices, lines, triangles, fields, arrays, cells):

@@ -106,7 +106,11 @@ typedef struct dem_pack {
     dem_moments_kept moments; ///< what was met: exact (10 moments), volume (and centre), free
     double moment_residual;   ///< largest relative residual of the moments met [-]
     double gap_estimate;      ///< IoU gap as the packer saw it [-]
-    double seconds;
+    size_t stand_in_triangles; ///< of the coarser surface that candidates of a large mesh came from; 0: the mesh itself.
+                              ///< Moments and all figures are always those of the mesh
+    double stand_in_volume;   ///< how much larger it is, relative to the mesh [-]
+    double stand_in_distance; ///< farthest vertex of the mesh from it, over the equivalent diameter [-]
+    double seconds;           ///< [s]
 } dem_pack;
 
 /// Packs spheres into a repaired mesh. Same result for a given seed and any number of threads.
