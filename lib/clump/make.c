@@ -46,15 +46,28 @@ static dem_status make_surface(const dem_mesh *mesh, size_t triangles, const dem
     return DEM_OK;
 }
 
+static void write_targets(dem_buffer *out, const dem_pack_options *asked)
+{
+    for (size_t i = 0; i < asked->target_count; i++) {
+        dem_buffer_print(out, "%s\"%s\":", i ? "," : ",\"targets\":{", asked->targets[i].measure);
+        dem_buffer_number(out, asked->targets[i].bound, 17);
+    }
+    if (asked->target_count > 0)
+        dem_buffer_text(out, "}");
+}
+
 static void write_parameters(dem_buffer *out, const dem_pack_options *asked, const dem_pack *pack)
 {
     static const char *const efforts[] = {"fast", "default", "best"};
     static const char *const moments[] = {"free", "volume", "exact"};
     static const char *const sides[] = {"both", "inscribed", "outer"};
-    if (asked->gap > 0) {
-        dem_buffer_text(out, "{\"gap\":");
-        dem_buffer_number(out, asked->gap, 17);
-        dem_buffer_print(out, ",\"max_spheres\":%zu", asked->max_spheres);
+    if (asked->gap > 0 || asked->target_count > 0) {
+        dem_buffer_print(out, "{\"max_spheres\":%zu", asked->max_spheres);
+        if (asked->gap > 0) {
+            dem_buffer_text(out, ",\"gap\":");
+            dem_buffer_number(out, asked->gap, 17);
+        }
+        write_targets(out, asked);
     } else {
         dem_buffer_print(out, "{\"spheres\":%zu", asked->spheres);
     }

@@ -6,6 +6,7 @@
 #include <time.h>
 
 #include "base/status.h"
+#include "clump/pack_target.h"
 
 enum { MOST_SPHERES = 100000 };
 
@@ -74,7 +75,9 @@ dem_status dem_clump_pack(const dem_ctx *ctx, const dem_mesh *mesh, const dem_pa
     if (!packer)
         return dem_fail(error, DEM_USAGE, "there is no packing method '%s'; --methods lists them", options.method);
     double start = seconds_now();
-    dem_status status = packer->run(ctx, mesh, &options, pack, error);
+    bool searched = options.gap > 0 || options.target_count > 0;
+    dem_status status = searched ? dem_pack_target(ctx, mesh, packer, &options, pack, error)
+                                 : packer->run(ctx, mesh, &options, pack, error);
     if (status != DEM_OK) {
         dem_pack_free(pack);
         return status;

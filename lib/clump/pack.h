@@ -18,7 +18,8 @@ typedef struct dem_packer {
     const char *about;
     const dem_packer_parameter *parameters;
     size_t parameter_count;
-    /// Fills everything of `pack` but `seconds`; the options have been checked and completed.
+    /// Fills everything of `pack` but `seconds`; the options have been checked and completed, and ask for a number of
+    /// spheres (not for a gap or targets). DEM_FAILED: not with this number.
     dem_status (*run)(const dem_ctx *ctx, const dem_mesh *mesh, const dem_pack_options *options, dem_pack *pack,
                       dem_error *error);
 } dem_packer;

@@ -86,12 +86,24 @@ typedef enum dem_effort { DEM_EFFORT_FAST, DEM_EFFORT_DEFAULT, DEM_EFFORT_BEST }
 typedef enum dem_moments_kept { DEM_MOMENTS_FREE, DEM_MOMENTS_VOLUME, DEM_MOMENTS_EXACT } dem_moments_kept;
 typedef enum dem_side { DEM_SIDE_BOTH, DEM_SIDE_INSCRIBED, DEM_SIDE_OUTER } dem_side;
 
+/// A bound that a packing's error has to keep, as dem_fidelity_measure sees it.
+typedef struct dem_target {
+    const char *measure;      ///< member of dem_fidelity: "inertia_error"; dem_target_read knows shorter names
+    double bound;             ///< of its size, in its unit
+} dem_target;
+/// Reads "inertia=0.5%", "hausdorff=2%", "normal=8deg", "overlap=1.5", "pieces=1". Error: DEM_USAGE.
+DEM_API dem_status dem_target_read(const char *text, dem_target *target, dem_error *error);
+/// The largest of error / bound; at most 1: all targets hold.
+DEM_API double dem_target_ratio(const dem_target *targets, size_t count, const dem_fidelity *fidelity);
+
 /// A packing to make. Zero-initialised fields take the defaults in brackets.
 typedef struct dem_pack_options {
     const char *method;       ///< registry name ["optimal"]
-    size_t spheres;           ///< at most so many [50]; ignored when `gap` is given
+    size_t spheres;           ///< at most so many [50]; ignored when `gap` or targets are given
     double gap;               ///< fewest spheres whose IoU gap is at most this fraction [0: not asked]
-    size_t max_spheres;       ///< bound of `gap` [2000]
+    const dem_target *targets;  ///< [target_count] fewest spheres for which these hold, too
+    size_t target_count;
+    size_t max_spheres;       ///< bound of `gap` and targets [2000]
     dem_effort effort;        ///< set by dem_pack_defaults
     dem_moments_kept moments; ///< set by dem_pack_defaults
     dem_side side;
@@ -102,7 +114,8 @@ DEM_API dem_pack_options dem_pack_defaults(void);
 typedef struct dem_pack {
     dem_ball *balls;          ///< malloc'd, in the frame of the mesh [m]
     size_t count;
-    bool reached;             ///< the asked gap or, without one, always true
+    bool reached;             ///< the asked gap and targets or, without any, always true
+    bool interrupted;         ///< the search for them was stopped; this is the best so far
     dem_moments_kept moments; ///< what was met: exact (10 moments), volume (and centre), free
     double moment_residual;   ///< largest relative residual of the moments met [-]
     double gap_estimate;      ///< IoU gap as the packer saw it [-]
