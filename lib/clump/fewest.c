@@ -8,13 +8,15 @@
 
 #include <math.h>
 
-enum { OUTWARD_TRIES = 8, INWARD_TRIES = 9, BELOW = 2 };
+enum { OUTWARD_TRIES = 8, AROUND_TRIES = 6, INWARD_TRIES = 9, BELOW = 2 };
 
 static const double usual_power = 0.8, least_power = 0.35, most_power = 1.6;
-static const double aim = 0.985;        // of the bound: errors scatter by a percent or two
+static const double aim = 0.985;         // of the bound: errors scatter by a percent or two
 static const double resolution = 0.015;  // of the number of spheres, where single ones do not show
 static const double narrowly = 1.05;
-static const double most_growth = 8;  // of the number at a time: slopes learnt from noise lead far
+static const double near_bound = 0.05, beyond = 0.03;  // relative, of the error and of the number
+static const double dropped = 0.1;                     // a lower error has not come down as a power
+static const double most_growth = 8;                   // of the number at a time: slopes learnt from noise lead far
 
 typedef struct search {
     dem_fewest_measure *measure;
@@ -90,10 +92,10 @@ static dem_status attempt(search *s, size_t asked, dem_error *error)
     return DEM_OK;
 }
 
-// the number that a power law through `from` asks for
-static double predict(const search *s, dem_fewest_try from)
+// the number that a power law through `from` has this `worst` at
+static double predict(const search *s, dem_fewest_try from, double worst)
 {
-    return tells(from) ? (double)from.asked * pow(from.worst / aim, 1 / s->power) : 2.0 * (double)from.asked;
+    return (double)from.asked * (tells(from) ? pow(from.worst / worst, 1 / s->power) : 2);
 }
 
 static dem_fewest_try newest(const search *s)
@@ -101,35 +103,53 @@ static dem_fewest_try newest(const search *s)
     return s->tried[s->count - 1];
 }
 
-// half as many, and again, as long as that is no worse: for errors that rise with the number
-static dem_status look_down(search *s, dem_fewest_try from, dem_error *error)
+// between the best so far and its neighbours on both sides, where the farther one is; below the least: half as many
+static size_t next_around(const search *s)
 {
-    for (size_t n = from.asked / 2; n > 0 && s->works.asked == 0 && s->count < DEM_FEWEST_TRIES; n /= 2) {
-        DEM_TRY(attempt(s, n, error));
-        if (newest(s).worst > from.worst)
-            return DEM_OK;
-        from = newest(s);
+    size_t best = s->best.asked, below = 0, above = 0;
+    for (size_t i = 0; i < s->count; i++) {
+        size_t n = s->tried[i].asked;
+        if (n < best && n > below)
+            below = n;
+        if (n > best && (above == 0 || n < above))
+            above = n;
     }
+    double down = below ? (double)best / (double)below : best > 1 ? INFINITY : 1;
+    double up = above ? (double)above / (double)best : 1;
+    double n = down < up ? sqrt((double)best * (double)above) : below ? sqrt((double)best * (double)below) : best / 2;
+    size_t whole = (size_t)round(n);
+    return whole < 1 || find(s, whole) ? 0 : whole;
+}
+
+// more spheres did not help: is there a valley, or do fewer help?
+static dem_status look_around(search *s, int tries, dem_error *error)
+{
+    for (size_t n; tries > 0 && s->works.asked == 0 && (n = next_around(s)) > 0; tries--)
+        DEM_TRY(attempt(s, n, error));
     return DEM_OK;
 }
 
 static dem_status go_out(search *s, size_t begin, size_t most, dem_error *error)
 {
     DEM_TRY(attempt(s, begin, error));
-    dem_fewest_try first = newest(s), last = first;
+    dem_fewest_try last = newest(s);
     bool looked = false;
-    for (int k = 1; s->works.asked == 0 && last.asked < most && s->count < DEM_FEWEST_TRIES; k++) {
-        double n = fmin(fmax(predict(s, last), 1.3 * (double)last.asked + 1), most_growth * (double)last.asked);
+    if (last.asked >= most && s->works.asked == 0) {
+        DEM_TRY(look_around(s, 1, error));
+        return s->best.asked < most ? look_around(s, AROUND_TRIES - 1, error) : DEM_OK;
+    }
+    for (int k = 1; s->works.asked == 0 && last.asked < most; k++) {
+        double n = fmin(fmax(predict(s, last, aim), 1.3 * (double)last.asked + 1), most_growth * (double)last.asked);
         bool end = k >= OUTWARD_TRIES || n >= (double)most;
         DEM_TRY(attempt(s, end ? most : (size_t)ceil(n), error));
         bool in_vain = !(newest(s).worst < last.worst);
         last = newest(s);
-        if (in_vain && !looked && s->works.asked == 0) {
+        if (in_vain && !looked) {
             looked = true;
-            DEM_TRY(look_down(s, first, error));
+            DEM_TRY(look_around(s, AROUND_TRIES, error));
         }
     }
-    return looked ? DEM_OK : look_down(s, first, error);
+    return DEM_OK;
 }
 
 static bool close_enough(const search *s)
@@ -138,26 +158,31 @@ static bool close_enough(const search *s)
     return apart <= fmax(1, floor(resolution * (double)s->works.asked));
 }
 
-// between what works and what fails
-static size_t next_inward(const search *s, bool bisect)
+// Between what works and what fails: where the error should meet the bound. Where the last number did not halve the
+// bracket (`creeps`) and came close to the bound, a little beyond it, otherwise by bisection.
+static size_t next_inward(const search *s, bool creeps)
 {
     double low = (double)s->fails.asked, high = (double)s->works.asked, n;
-    if (s->fails.asked == 0)
-        n = fmax(tells(s->works) ? predict(s, s->works) : 0, high / most_growth);
-    else if (bisect || !tells(s->fails) || !tells(s->works))
+    dem_fewest_try last = newest(s);
+    bool close = tells(last) && fabs(log(last.worst)) < near_bound;
+    if (creeps && close)
+        n = holds(last) ? (1 - beyond) * high : (1 + beyond) * low;
+    else if (s->fails.asked == 0)
+        n = fmax(tells(s->works) ? predict(s, s->works, 1) : 0, high / most_growth);
+    else if (creeps || !tells(s->fails) || !(s->works.worst > dropped))
         n = sqrt(low * high);
     else
-        n = low * pow(high / low, log(s->fails.worst / aim) / log(s->fails.worst / s->works.worst));
+        n = low * pow(high / low, log(s->fails.worst) / log(s->fails.worst / s->works.worst));
     return (size_t)fmin(fmax(round(n), low + 1), high - 1);
 }
 
 static dem_status go_in(search *s, dem_error *error)
 {
-    int same_side = 0;
+    bool creeps = holds(newest(s)) && s->fails.asked == 0;
     for (int k = 0; k < INWARD_TRIES && !close_enough(s) && s->count < DEM_FEWEST_TRIES; k++) {
-        bool held = holds(newest(s));
-        DEM_TRY(attempt(s, next_inward(s, same_side >= 2), error));
-        same_side = holds(newest(s)) == held ? same_side + 1 : 0;
+        double width = log((double)s->works.asked / fmax(0.5, (double)s->fails.asked));
+        DEM_TRY(attempt(s, next_inward(s, creeps), error));
+        creeps = log((double)s->works.asked / fmax(0.5, (double)s->fails.asked)) > width / 2;
     }
     return DEM_OK;
 }

@@ -131,8 +131,8 @@ static dem_status set_targets(search *s, const dem_pack_options *options, dem_er
         size_t at = 0;
         while (at < s->target_count && strcmp(s->targets[at].measure, m->field) != 0)
             at++;
-        double bound = at < s->target_count ? fmin(s->targets[at].bound, options->targets[i].bound)
-                                            : options->targets[i].bound;
+        double bound =
+            at < s->target_count ? fmin(s->targets[at].bound, options->targets[i].bound) : options->targets[i].bound;
         s->targets[at] = (dem_target){m->field, bound};
         s->target_count += at == s->target_count;
     }
