@@ -99,20 +99,20 @@ static void all_targets_hold_together_and_the_tightest_decides(void **state)
 {
     (void)state;
     dem_mesh grain = shape_grain(8);
-    dem_pack_options options = gap_below(0.15);
+    dem_pack_options options = gap_below(0.25);
     dem_target targets[3];
     dem_error error;
     dem_pack loose, pack;
     dem_fidelity f;
     check_ok(dem_clump_pack(&single, &grain, &options, &loose, &error), error);
-    check_ok(dem_target_read("hausdorff=7%", &targets[0], &error), error);
+    check_ok(dem_target_read("hausdorff=10%", &targets[0], &error), error);
     check_ok(dem_target_read("inertia=0.1", &targets[1], &error), error);
     check_ok(dem_target_read("pieces=1", &targets[2], &error), error);
     options.targets = targets;
     options.target_count = 3;
     check_ok(dem_clump_pack(&single, &grain, &options, &pack, &error), error);
     check_ok(dem_fidelity_measure(&single, &grain, pack.balls, pack.count, 0, &f, &error), error);
-    check(pack.reached && f.iou_gap <= 0.15 && f.distance_max <= 0.07 && f.inertia_error <= 1e-3 && f.pieces == 1);
+    check(pack.reached && f.iou_gap <= 0.25 && f.distance_max <= 0.1 && f.inertia_error <= 1e-3 && f.pieces == 1);
     check(dem_target_ratio(targets, 3, &f) <= 1);
     check(pack.count > loose.count);
     dem_pack_free(&loose);

@@ -9,11 +9,12 @@
 #include <math.h>
 
 enum { OUTWARD_TRIES = 8, AROUND_TRIES = 6, INWARD_TRIES = 9, BELOW = 2 };
+enum { SINGLE_SHOWS = 133 };  // fewer: single spheres show
 
 static const double usual_power = 0.8, least_power = 0.35, most_power = 1.6;
 static const double aim = 0.985;         // of the bound: errors scatter by a percent or two
-static const double resolution = 0.015;  // of the number of spheres, where single ones do not show
-static const double narrowly = 1.05;
+static const double resolution = 0.015;  // of the number of spheres
+static const double narrowly = 1.02;
 static const double near_bound = 0.05, beyond = 0.03;  // relative, of the error and of the number
 static const double dropped = 0.1;                     // a lower error has not come down as a power
 static const double most_growth = 8;                   // of the number at a time: slopes learnt from noise lead far
@@ -191,7 +192,8 @@ static dem_status go_in(search *s, dem_error *error)
 static dem_status look_below(search *s, dem_error *error)
 {
     bool found = true;
-    while (found && s->works.asked - s->fails.asked == 1 && s->fails.worst <= narrowly) {
+    while (found && s->works.asked < SINGLE_SHOWS && s->works.asked - s->fails.asked == 1 &&
+           s->fails.worst <= narrowly) {
         size_t top = s->fails.asked;
         found = false;
         for (size_t k = 1; k <= BELOW && k < top && !found && s->count < DEM_FEWEST_TRIES; k++) {
