@@ -122,7 +122,8 @@ static dem_status write_outputs(job *j, job_result *r, const dem_mesh *mesh, siz
                                 dem_error *error)
 {
     const job_options *o = j->options;
-    if (dem_progress(&j->ctx, "writing", 1))
+    // of a search that was stopped the best so far is written
+    if (!r->pack.interrupted && dem_progress(&j->ctx, "writing", 1))
         return dem_fail(error, DEM_INTERRUPTED, "interrupted; nothing was written");
     if (o->folder || o->outputs.count == 0) {
         size_t count = o->formats.count ? o->formats.count : 1;
@@ -142,14 +143,20 @@ static dem_status write_outputs(job *j, job_result *r, const dem_mesh *mesh, siz
     return DEM_OK;
 }
 
-static dem_status finish_body(job *j, job_result *r, dem_mesh *mesh, size_t body, size_t bodies, dem_error *error)
+// to the size asked for
+static void rescale(const job_options *o, job_result *r, dem_mesh *mesh)
 {
-    const job_options *o = j->options;
     r->solid = dem_mesh_solid(mesh);
     if (o->size > 0) {
         dem_mesh_scale(mesh, o->size / cbrt(6 * r->solid.volume / 3.14159265358979323846));
         r->solid = dem_mesh_solid(mesh);
     }
+}
+
+static dem_status finish_body(job *j, job_result *r, dem_mesh *mesh, size_t body, size_t bodies, dem_error *error)
+{
+    const job_options *o = j->options;
+    rescale(o, r, mesh);
     dem_make_options make = o->make;
     make.name = r->name;
     make.source_mesh = strcmp(j->input, "-") ? dem_file_name(j->input) : "standard input";
@@ -205,12 +212,39 @@ static void run_bodies(job *j, dem_mesh *mesh, const char *name)
     free(bodies);
 }
 
+static void open_job(job *j, const dem_ctx *ctx, const char *input, const job_options *options)
+{
+    *j = (job){.caller = ctx, .input = input, .options = options, .started = now()};
+    j->ctx = (dem_ctx){.log = job_log, .progress = job_progress, .user = j,
+                       .subject = strcmp(input, "-") ? input : "standard input", .threads = ctx->threads};
+}
+
+dem_status job_read(const dem_ctx *ctx, const char *input, const char *name, const job_options *options,
+                    dem_mesh *mesh, job_result *result)
+{
+    job j;
+    open_job(&j, ctx, input, options);
+    *result = (job_result){.input = input};
+    snprintf(result->name, sizeof result->name, "%s", name);
+    result->status = read_and_repair(&j, mesh, &result->error);
+    if (result->status == DEM_OK)
+        rescale(options, result, mesh);
+    else if (!result->error.file[0])
+        snprintf(result->error.file, sizeof result->error.file, "%s", j.ctx.subject);
+    result->report = j.report;
+    result->seconds_read = j.seconds_read;
+    result->seconds_repair = j.seconds_repair;
+    result->warnings = j.warnings;
+    result->warning_count = j.warning_count;
+    return result->status;
+}
+
 void job_run(const dem_ctx *ctx, const char *input, const char *name, const job_options *options,
              job_results *results)
 {
-    job j = {.caller = ctx, .input = input, .options = options, .results = results, .started = now()};
-    j.ctx = (dem_ctx){.log = job_log, .progress = job_progress, .user = &j,
-                      .subject = strcmp(input, "-") ? input : "standard input", .threads = ctx->threads};
+    job j;
+    open_job(&j, ctx, input, options);
+    j.results = results;
     dem_mesh mesh = {0};
     dem_error error = {0};
     dem_status status = read_and_repair(&j, &mesh, &error);
@@ -236,18 +270,22 @@ void job_run(const dem_ctx *ctx, const char *input, const char *name, const job_
     free(j.warnings);
 }
 
+void job_result_release(job_result *r)
+{
+    dem_clump_destroy(r->clump);
+    for (size_t k = 0; k < r->warning_count; k++)
+        free(r->warnings[k]);
+    for (size_t k = 0; k < r->output_count; k++)
+        free(r->outputs[k]);
+    free(r->warnings);
+    free(r->outputs);
+    *r = (job_result){0};
+}
+
 void job_results_release(job_results *results)
 {
-    for (size_t i = 0; i < results->count; i++) {
-        job_result *r = &results->items[i];
-        dem_clump_destroy(r->clump);
-        for (size_t k = 0; k < r->warning_count; k++)
-            free(r->warnings[k]);
-        for (size_t k = 0; k < r->output_count; k++)
-            free(r->outputs[k]);
-        free(r->warnings);
-        free(r->outputs);
-    }
+    for (size_t i = 0; i < results->count; i++)
+        job_result_release(&results->items[i]);
     free(results->items);
     *results = (job_results){0};
 }

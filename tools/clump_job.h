@@ -48,4 +48,10 @@ void job_run(const dem_ctx *ctx, const char *input, const char *name, const job_
              job_results *results);
 void job_results_release(job_results *results);
 
+/// Reads, repairs and rescales one input, without making anything of it: `result` holds everything of the mesh. Release
+/// both; job_result_release.
+dem_status job_read(const dem_ctx *ctx, const char *input, const char *name, const job_options *options,
+                    dem_mesh *mesh, job_result *result);
+void job_result_release(job_result *result);
+
 #endif

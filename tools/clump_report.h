@@ -9,9 +9,16 @@
 void report_text(dem_buffer *out, const job_result *result, const job_options *options);
 
 /// One JSON object: of the grain alone, or {"grains": [...], "failed": n} for several.
-void report_json(dem_buffer *out, const job_results *results, bool several);
+void report_json(dem_buffer *out, const job_results *results, const job_options *options, bool several);
 
 /// A header line and one row per grain; SI units stand in the header.
 void report_csv(dem_buffer *out, const job_results *results);
+
+/// Parts of these that other reports share: a text of a CSV file, quoted where needed; `"mesh": {...}`, what was found
+/// and done; `"warnings": [...]` and the like.
+void report_csv_text(dem_buffer *out, const char *text);
+void report_put_mesh(dem_json_writer *w, const dem_mesh_report *report);
+void report_put_texts(dem_json_writer *w, const char *key, char **texts, size_t count);
+void report_put_error(dem_json_writer *w, const dem_error *error);
 
 #endif

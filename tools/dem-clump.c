@@ -12,6 +12,7 @@
 #include "clump/pack.h"
 #include "clump_job.h"
 #include "clump_report.h"
+#include "clump_sweep.h"
 #include "out/export.h"
 
 // what the option table fills
@@ -20,9 +21,9 @@ typedef struct arguments {
     long spheres, max_spheres;
     double gap, size, density, wrap_detail;
     int effort, moments, mass_from, frame, repair, keep;
-    bool inscribed, outer, split, methods;
-    const char *method, *unit;
-    cli_texts outputs, formats;
+    bool inscribed, outer, split;
+    const char *method, *methods, *unit, *sweep;
+    cli_texts outputs, formats, targets;
 } arguments;
 
 static const char about[] =
@@ -34,6 +35,8 @@ static const char epilogue[] = "Examples:\n"
                                "  dem-clump grain.stl                          50 spheres -> grain.json\n"
                                "  dem-clump grain.stl --unit mm -n 100 -o grain.json -o grain.png\n"
                                "  dem-clump grain.obj -e 3                     as many spheres as a 3 % gap needs\n"
+                               "  dem-clump grain.obj --target hausdorff=3% --target normal=10deg\n"
+                               "  dem-clump grain.obj --sweep 10,20,50,100,200 --methods all -o report.html\n"
                                "  dem-clump grain.obj -o - --format xyzr       spheres on standard output\n"
                                "  dem-clump scans/*.stl -o clumps/             a batch; the table on standard output\n"
                                "Exit status: 0 done, 1 failed, 2 wrong usage, 3 bad input, 4 cannot write, 130 interrupted.";
@@ -47,7 +50,6 @@ static arguments default_arguments(void)
 {
     dem_make_options make = dem_make_defaults();
     return (arguments){.common = CLI_COMMON_DEFAULTS,
-                       .spheres = (long)make.pack.spheres,
                        .max_spheres = (long)make.pack.max_spheres,
                        .density = make.density,
                        .effort = make.pack.effort,
@@ -81,7 +83,8 @@ static job_options job_options_from(const arguments *a)
     o.make.density = a->density;
     o.make.mass_from = (dem_mass_source)a->mass_from;
     o.make.pack.method = a->method;
-    o.make.pack.spheres = (size_t)a->spheres;
+    if (a->spheres)
+        o.make.pack.spheres = (size_t)a->spheres;
     o.make.pack.max_spheres = (size_t)a->max_spheres;
     o.make.pack.gap = a->gap;
     o.make.pack.effort = (dem_effort)a->effort;
@@ -209,7 +212,7 @@ static int write_report(const cli_tool *tool, const arguments *a, const job_opti
             return cli_error(tool, &error);
     }
     if (a->common.json)
-        report_json(&text, results, several);
+        report_json(&text, results, options, several);
     else if (to_stdout || a->common.quiet)
         return 0;
     else if (several && !table)
@@ -218,6 +221,81 @@ static int write_report(const cli_tool *tool, const arguments *a, const job_opti
         for (size_t i = 0; i < results->count; i++)
             report_text(&text, &results->items[i], options);
     return text.size ? cli_print(tool, &text) : 0;
+}
+
+static int read_targets(const cli_tool *tool, const cli_texts *texts, dem_target **targets)
+{
+    dem_error error;
+    *targets = calloc(texts->count + 1, sizeof **targets);
+    for (size_t i = 0; *targets && i < texts->count; i++)
+        if (dem_target_read(texts->items[i], &(*targets)[i], &error) != DEM_OK)
+            return cli_wrong_usage(tool, "--target: %s", error.text);
+    return *targets ? 0 : cli_error(tool, &(dem_error){.code = DEM_NO_MEMORY, .text = "out of memory"});
+}
+
+// ---- --sweep
+
+// the command as it was given, without folders
+static void put_command(dem_buffer *out, int argc, char **argv)
+{
+    dem_buffer_text(out, "dem-clump");
+    for (int i = 1; i < argc; i++) {
+        const char *equals = argv[i][0] == '-' ? strchr(argv[i], '=') : NULL;
+        size_t head = equals ? (size_t)(equals + 1 - argv[i]) : 0;
+        const char *tail = argv[i] + head, *name = dem_file_name(tail);
+        tail = *name ? name : tail;
+        bool quoted = tail[strcspn(tail, " \t'\"\\$&|;<>()*?")] != 0;
+        dem_buffer_text(out, " ");
+        dem_buffer_bytes(out, argv[i], head);
+        dem_buffer_print(out, quoted ? "'%s'" : "%s", tail);
+    }
+}
+
+static int sort_sweep_outputs(const cli_tool *tool, job_options *job, bool several)
+{
+    for (size_t i = 0; i < job->outputs.count; i++) {
+        const char *path = job->outputs.items[i];
+        if (is_folder(path))
+            job->folder = path;
+        else if (several)
+            return cli_wrong_usage(tool, "several grains cannot all go to '%s'; name a folder with -o DIR/", path);
+        else if (!dem_file_has_suffix(path, "csv") && !dem_file_has_suffix(path, "svg") &&
+                 !dem_file_has_suffix(path, "html"))
+            return cli_wrong_usage(tool, "a sweep writes .csv, .svg and .html, not '%s'; -o DIR/ for all three", path);
+    }
+    if (job->folder && job->outputs.count > 1)
+        return cli_wrong_usage(tool, "give -o either a folder or files, not both");
+    if (job->folder && mkdir(job->folder, 0777) != 0 && !is_folder(job->folder))
+        return cli_error(tool, &(dem_error){.code = DEM_CANNOT_WRITE, .text = "cannot make the folder for -o"});
+    if (job->folder)
+        job->outputs = (cli_texts){0};
+    return 0;
+}
+
+static int read_plan(const cli_tool *tool, const arguments *a, dem_sweep *plan)
+{
+    dem_error error;
+    const char *methods = a->methods && *a->methods ? a->methods : a->method;
+    if (a->spheres || a->gap > 0 || a->targets.count)
+        return cli_wrong_usage(tool, "--sweep names the numbers of spheres itself; leave out -n, -e and --target");
+    if (a->split || a->formats.count)
+        return cli_wrong_usage(tool, "--sweep goes neither with --split nor with --format");
+    if (dem_sweep_read_counts(plan, a->sweep, &error) != DEM_OK)
+        return cli_wrong_usage(tool, "--sweep: %s", error.text);
+    if (dem_sweep_read_series(plan, methods, (dem_effort)a->effort, &error) != DEM_OK)
+        return cli_wrong_usage(tool, "--methods: %s", error.text);
+    return 0;
+}
+
+static int run_sweep(const cli_tool *tool, const arguments *a, job_options *job, const cli_texts *inputs, char **names,
+                     const char *command)
+{
+    sweep_options options = {.job = job, .json = a->common.json, .quiet = a->common.quiet, .command = command,
+                             .threads = dem_threads(&(dem_ctx){.threads = (int)a->common.threads})};
+    int status = read_plan(tool, a, &options.plan);
+    if (status == 0)
+        status = sort_sweep_outputs(tool, job, inputs->count > 1);
+    return status ? status : sweep_run(tool, &a->common, inputs, names, &options);
 }
 
 static int exit_status(const job_results *results, bool several)
@@ -235,35 +313,53 @@ static int exit_status(const job_results *results, bool several)
     return cli_interrupted() ? DEM_INTERRUPTED : status;
 }
 
-static int run(const cli_tool *tool, const arguments *a, const cli_texts *inputs)
+static int run_batch(const cli_tool *tool, const arguments *a, job_options *options, const cli_texts *inputs,
+                     char **names)
 {
-    job_options options = job_options_from(a);
-    dem_error error;
-    const char *table = NULL;
     bool several = inputs->count > 1;
-    if (a->unit && dem_unit(a->unit, DEM_DIMENSION_LENGTH, &options.unit, &error) != DEM_OK)
-        return cli_wrong_usage(tool, "--unit: %s", error.text);
-    if (a->inscribed && a->outer)
-        return cli_wrong_usage(tool, "--inscribed and --outer exclude each other");
+    const char *table = NULL;
     cli_texts files = {.items = calloc(a->outputs.count + 1, sizeof *files.items)};
-    char **names = grain_names(inputs);
-    int status = files.items && names ? sort_outputs(tool, &options, several, &files, &table)
-                                      : cli_error(tool, &(dem_error){.code = DEM_NO_MEMORY, .text = "out of memory"});
+    int status = files.items ? sort_outputs(tool, options, several, &files, &table)
+                             : cli_error(tool, &(dem_error){.code = DEM_NO_MEMORY, .text = "out of memory"});
     if (status == 0) {
         cli_session session;
         job_results results = {0};
         cli_begin(&session, tool, &a->common);
-        run_grains(&session, inputs, names, &options, &results);
+        run_grains(&session, inputs, names, options, &results);
         cli_end(&session);
-        status = write_report(tool, a, &options, &results, several || a->split, table);
+        status = write_report(tool, a, options, &results, several || a->split, table);
         if (status == 0)
             status = exit_status(&results, several);
         job_results_release(&results);
     }
+    free(files.items);
+    return status;
+}
+
+static int run(const cli_tool *tool, const arguments *a, const cli_texts *inputs, const char *command)
+{
+    job_options options = job_options_from(a);
+    dem_error error;
+    dem_target *targets = NULL;
+    if (a->unit && dem_unit(a->unit, DEM_DIMENSION_LENGTH, &options.unit, &error) != DEM_OK)
+        return cli_wrong_usage(tool, "--unit: %s", error.text);
+    if (a->inscribed && a->outer)
+        return cli_wrong_usage(tool, "--inscribed and --outer exclude each other");
+    if (!a->sweep && a->methods)
+        return cli_wrong_usage(tool, "--methods with a list goes with --sweep, as in --sweep 10,50,200 --methods %s",
+                               a->methods);
+    char **names = grain_names(inputs);
+    int status = names ? read_targets(tool, &a->targets, &targets)
+                       : cli_error(tool, &(dem_error){.code = DEM_NO_MEMORY, .text = "out of memory"});
+    options.make.pack.targets = targets;
+    options.make.pack.target_count = a->targets.count;
+    if (status == 0)
+        status = a->sweep ? run_sweep(tool, a, &options, inputs, names, command)
+                          : run_batch(tool, a, &options, inputs, names);
+    free(targets);
     for (size_t i = 0; names && i < inputs->count; i++)
         free(names[i]);
     free(names);
-    free(files.items);
     return status;
 }
 
@@ -274,7 +370,11 @@ int main(int argc, char **argv)
         {.help = "Spheres"},
         {"spheres", 'n', CLI_WHOLE, "N", "at most N spheres (default 50)", &a.spheres, 1, 100000},
         {"gap", 'e', CLI_PERCENT, "PCT", "instead: the fewest spheres whose IoU gap is at most PCT %", &a.gap, 1e-3, 99},
-        {"max-spheres", 0, CLI_WHOLE, "N", "bound of -e (default 2000)", &a.max_spheres, 1, 100000},
+        {"target", 0, CLI_TEXTS, "MEASURE=VALUE",
+         "instead: the fewest spheres for which all targets hold: gap=3%, distance=1%, hausdorff=5%, protrusion=2%, "
+         "volume=1%, centre=1%, inertia=0.5%, normal=8deg, overlap=1.8, pieces=1; repeatable",
+         &a.targets, 0, 0},
+        {"max-spheres", 0, CLI_WHOLE, "N", "bound of -e and --target (default 2000)", &a.max_spheres, 1, 100000},
         {"effort", 0, CLI_CHOICE, effort_names, "how hard to search (default: default)", &a.effort, 0, 0},
         {"moments", 0, CLI_CHOICE, moments_names,
          "what the union of the spheres shall have exactly of the grain (default exact: volume, centre, inertia)",
@@ -282,7 +382,11 @@ int main(int argc, char **argv)
         {"inscribed", 0, CLI_FLAG, NULL, "no sphere reaches outside the mesh", &a.inscribed, 0, 0},
         {"outer", 0, CLI_FLAG, NULL, "no part of the mesh is left uncovered", &a.outer, 0, 0},
         {"method", 0, CLI_TEXT, "NAME", "packing method (default optimal)", &a.method, 0, 0},
-        {"methods", 0, CLI_FLAG, NULL, "list the methods and leave", &a.methods, 0, 0},
+        {"methods", 0, CLI_WORDS, "[A,B]",
+         "list the methods and leave; with --sweep those to compare, as in optimal,optimal:fast or all", &a.methods, 0,
+         0},
+        {"sweep", 0, CLI_TEXT, "N,N", "pack each of these numbers of spheres: errors against spheres and seconds; -o "
+         "report.html, .csv, .svg, or DIR/", &a.sweep, 0, 0},
         {.help = "Mesh"},
         {"unit", 0, CLI_TEXT, "UNIT", "length unit of the file (default m)", &a.unit, 0, 0},
         {"size", 0, CLI_LENGTH, "D", "rescale to this equivalent-volume diameter, as in 2mm", &a.size, CLI_POSITIVE,
@@ -310,15 +414,19 @@ int main(int argc, char **argv)
     cli_texts inputs = {0};
     int status;
     if (cli_parse(&tool, argc, argv, &inputs, &status) == CLI_GO) {
-        if (a.methods)
+        dem_buffer command = {0};
+        put_command(&command, argc, argv);
+        if (a.methods && !*a.methods && !a.sweep)
             status = list_methods(&tool);
         else if (inputs.count == 0)
             status = cli_wrong_usage(&tool, "no mesh given");
         else
-            status = run(&tool, &a, &inputs);
+            status = run(&tool, &a, &inputs, command.failed ? "dem-clump" : command.data);
+        dem_buffer_release(&command);
     }
     cli_texts_release(&inputs);
     cli_texts_release(&a.outputs);
     cli_texts_release(&a.formats);
+    cli_texts_release(&a.targets);
     return status;
 }
