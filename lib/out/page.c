@@ -35,7 +35,7 @@ static const char style[] =
     "table.grid { width: 100%; table-layout: fixed; border: 0; margin: 0; }\n"
     "table.grid td { border: 0 !important; padding: 4px; text-align: center; vertical-align: top; white-space: normal; "
     "color: #4a4e57; }\n"
-    "table.grid img { width: 100%; display: block; }\n"
+    "table.grid img { width: 100%; max-width: 420px; display: block; margin: 0 auto; }\n"
     "table.halves { width: 100%; border: 0; margin: 0; }\n"
     "table.halves > tbody > tr > td { border: 0; padding: 0 28px 0 0; text-align: left; vertical-align: top; "
     "white-space: normal; font-size: 15px; }\n"
@@ -129,7 +129,7 @@ void dem_page_row_begin(dem_buffer *out, bool first_of_group)
 
 void dem_page_cell(dem_buffer *out, const char *text)
 {
-    bool number = isdigit((unsigned char)text[strspn(text, "+-")]);
+    bool number = isdigit((unsigned char)text[strspn(text, "+-")]) || strcmp(text, "–") == 0;
     put_element(out, number ? "td" : strlen(text) > 30 ? "td class=\"text long\"" : "td class=\"text\"", text);
 }
 

@@ -312,8 +312,10 @@ static bool fit(panel *p, bool vertical)
         p->y = dem_scale_fit(p->plot->y.log, values, count);
         for (size_t i = 0; i < count; i++)
             p->floored |= p->plot->y.log && p->plot->y.floor > 0 && values[i] <= p->plot->y.floor;
-        if (p->floored)
+        if (p->floored) {
             p->y.low = p->plot->y.floor;
+            p->y.high = fmax(p->y.high, 100 * p->y.low);
+        }
     } else
         p->x = dem_scale_fit(p->plot->x.log, values, count);
     free(values);

@@ -6,7 +6,7 @@
 
 #include "base/text.h"
 
-enum { FEWEST_LABELS = 3, FEW_LABELS = 4, MANY_LABELS = 7, LINEAR_LABELS = 6 };
+enum { FEWEST_LABELS = 3, MANY_LABELS = 7, LINEAR_LABELS = 6 };
 
 static const double room = 0.04;        // of the range on both sides
 static const double least_range = 0.3;  // decades
@@ -114,11 +114,12 @@ static int count_labels(const dem_scale *s, int first, int last, labels l)
 
 static labels choose_labels(const dem_scale *s, int first, int last)
 {
-    static const unsigned sets[] = {1u << 1, 1u << 1 | 1u << 2 | 1u << 5, 0x3fe};
+    static const unsigned sets[] = {1u << 1, 1u << 1 | 1u << 2 | 1u << 5,
+                                    1u << 1 | 1u << 2 | 1u << 3 | 1u << 4 | 1u << 6 | 1u << 8, 0x3fe};
     labels l = {sets[0], 1};
     while (count_labels(s, first, last, l) > MANY_LABELS)
         l.every++;
-    for (int k = 1; k < 3 && count_labels(s, first, last, l) < FEW_LABELS; k++)
+    for (int k = 1; k < 4 && count_labels(s, first, last, l) < FEWEST_LABELS; k++)
         l.digits = sets[k];
     return l;
 }
