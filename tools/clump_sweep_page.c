@@ -15,7 +15,8 @@
 
 enum { PICTURE_WIDTH = 380, PICTURE_HEIGHT = 330, MOST_PICTURES = 4, COLUMNS = 3 };
 
-static const double floor_shown = 1e-4;  // [%] moments that are exact are noise far below
+static const double least_percent = 1e-6;  // what is less is noise of rounding
+static const double floor_shown = 1e-4;    // [%] moments that are exact are noise far below
 
 // ---- plots
 
@@ -132,31 +133,24 @@ static bool page_plots(dem_buffer *out, const sweep_grain *g, bool against_secon
 
 // ---- pictures
 
-// columns [begin, end) of an image, as a PNG file
-static dem_status encode_part(const dem_image *image, int begin, int end, dem_buffer *out, dem_error *error)
+static dem_status draw_part(const dem_ctx *ctx, const sweep_grain *g, const dem_sweep_cell *cell, dem_picture_part part,
+                            dem_buffer *out, dem_error *error)
 {
-    dem_image part;
-    DEM_TRY(dem_image_create(end - begin, image->height, &part, error));
-    for (int y = 0; y < image->height; y++)
-        memcpy(part.pixels + (size_t)y * (size_t)part.width * 3,
-               image->pixels + ((size_t)y * (size_t)image->width + (size_t)begin) * 3, (size_t)part.width * 3);
-    dem_status status = dem_png_encode(&part, out, error);
-    dem_image_free(&part);
+    dem_image image;
+    DEM_TRY(dem_picture_render_part(ctx, &g->mesh, cell->pack.balls, cell->pack.count, part, PICTURE_WIDTH,
+                                    PICTURE_HEIGHT, &image, error));
+    dem_status status = dem_png_encode(&image, out, error);
+    dem_image_free(&image);
     return status;
 }
 
-// the clump, and where it is asked for the grain, from the picture of both
+// the clump, and if there is none yet the grain
 static dem_status draw_cell(const dem_ctx *ctx, const sweep_grain *g, const dem_sweep_cell *cell, dem_buffer *grain,
                             dem_buffer *clump, dem_error *error)
 {
-    dem_image image;
-    DEM_TRY(dem_picture_render(ctx, &g->mesh, cell->pack.balls, cell->pack.count, 2 * PICTURE_WIDTH, PICTURE_HEIGHT,
-                               &image, NULL, error));
-    dem_status status = encode_part(&image, PICTURE_WIDTH, 2 * PICTURE_WIDTH, clump, error);
-    if (status == DEM_OK && grain)
-        status = encode_part(&image, 0, PICTURE_WIDTH, grain, error);
-    dem_image_free(&image);
-    return status;
+    if (grain->size == 0)
+        DEM_TRY(draw_part(ctx, g, cell, DEM_PICTURE_GRAIN, grain, error));
+    return draw_part(ctx, g, cell, DEM_PICTURE_BALLS, clump, error);
 }
 
 // every series has its row; the grain stands before the first
@@ -189,8 +183,7 @@ static dem_status gallery_make(const dem_ctx *ctx, const sweep_grain *g, gallery
             dem_error reason;
             dem_status status = DEM_INTERRUPTED;
             if (!dem_progress(ctx, "pictures", done))
-                status = draw_cell(&(dem_ctx){.threads = ctx->threads}, g, cell,
-                                   pictures->grain.size ? NULL : &pictures->grain,
+                status = draw_cell(&(dem_ctx){.threads = ctx->threads}, g, cell, &pictures->grain,
                                    &pictures->clumps[s * MOST_PICTURES + i], &reason);
             if (status == DEM_NO_MEMORY)
                 return dem_fail_memory(error);
@@ -243,6 +236,12 @@ static void page_gallery(dem_buffer *out, const sweep_grain *g, const gallery *p
 
 // ---- the grain
 
+static const char *length_unit(const sweep_grain *g, double *factor)
+{
+    const char *unit = dem_length_unit(g->shape.equivalent_diameter, factor);
+    return strcmp(unit, "um") == 0 ? "µm" : unit;
+}
+
 static void page_repair(dem_buffer *out, const job_result *base)
 {
     const dem_mesh_report *m = &base->report;
@@ -288,7 +287,7 @@ static void page_shape(dem_buffer *out, const sweep_grain *g)
     _Static_assert(sizeof titles / sizeof *titles == DEM_SHAPE_FIGURES, "a title for every figure");
     dem_shape shape = g->shape;
     double factor;
-    const char *unit = dem_length_unit(shape.equivalent_diameter, &factor);
+    const char *unit = length_unit(g, &factor);
     char text[32];
     dem_page_table_begin(out, NULL, heads, 3);
     for (int i = 0; i < DEM_SHAPE_FIGURES; i++) {
@@ -322,6 +321,13 @@ static void page_grain(dem_buffer *out, const sweep_grain *g, const gallery *pic
 
 // ---- tables
 
+// an error in percent
+static void put_percent(dem_buffer *out, double part)
+{
+    double percent = 100 * part;
+    dem_page_number(out, fabs(percent) < least_percent ? 0 : percent, 3);
+}
+
 static void put_failed(dem_buffer *out, size_t cells)
 {
     dem_page_cell(out, "failed");
@@ -337,13 +343,13 @@ static void page_mass(dem_buffer *out, const sweep_grain *g, double density)
                              "diff. [%]",  "moments met"};
     static const char *const met[] = {"none", "volume, centre", "all"};
     double factor, cube;
-    const char *unit = dem_length_unit(g->shape.equivalent_diameter, &factor);
+    const char *unit = length_unit(g, &factor);
     char number[32];
     cube = pow(factor, 3);
     snprintf(volume, sizeof volume, "volume [%s³]", unit);
     snprintf(caption, sizeof caption,
              "The union of the spheres against the mesh: volume, centre of mass and principal "
-             "moments of inertia at %s kg/m³, all exact integrals. diff.: (union − mesh) / mesh.",
+             "moments of inertia at %s kg/m³, all exact integrals. diff.: (union − mesh) / mesh, 0 below 10⁻⁶ %%.",
              dem_format_double(number, sizeof number, density, 6));
     dem_page_heading(out, "Mass properties");
     dem_page_table_begin(out, caption, heads, 12);
@@ -368,11 +374,11 @@ static void page_mass(dem_buffer *out, const sweep_grain *g, double density)
             dem_page_cell(out, g->sweep.series[s].name);
             dem_page_number(out, (double)c->pack.count, 7);
             dem_page_number(out, c->whole.solid.volume * cube, 5);
-            dem_page_number(out, 100 * c->fidelity.volume_error, 3);
-            dem_page_number(out, 100 * c->fidelity.centre_offset, 3);
+            put_percent(out, c->fidelity.volume_error);
+            put_percent(out, c->fidelity.centre_offset);
             for (int i = 0; i < 3; i++) {
                 dem_page_number(out, c->whole.solid.principal[i] * density, 5);
-                dem_page_number(out, 100 * c->inertia_errors[i], 3);
+                put_percent(out, c->inertia_errors[i]);
             }
             dem_page_cell(out, met[c->pack.moments]);
             dem_page_row_end(out);
@@ -391,8 +397,9 @@ static void page_figures(dem_buffer *out, const sweep_grain *g)
     }
     heads[3 + DEM_MEASURES] = "packing [s]";
     dem_page_heading(out, "All figures");
-    dem_page_table_begin(out, "Lengths in % of d_eq. Packing time: processor time of one packing that ran alone.",
-                         heads, DEM_MEASURES + 4);
+    dem_page_table_begin(
+        out, "Lengths in % of d_eq; 0: below 10⁻⁶ %. Packing time: processor time of one packing that ran alone.",
+        heads, DEM_MEASURES + 4);
     for (size_t s = 0; s < g->sweep.series_count; s++)
         for (size_t k = 0; k < g->sweep.count_count; k++) {
             const dem_sweep_cell *c = dem_sweep_at(&g->sweep, s, k);
@@ -405,9 +412,13 @@ static void page_figures(dem_buffer *out, const sweep_grain *g)
                 put_failed(out, DEM_MEASURES + 2);
             else {
                 dem_page_number(out, (double)c->pack.count, 7);
-                for (int i = 0; i < DEM_MEASURES; i++)
-                    dem_page_number(
-                        out, dem_measure_shown(&dem_measures[i], dem_measure_of(&dem_measures[i], &c->fidelity)), 3);
+                for (int i = 0; i < DEM_MEASURES; i++) {
+                    double value = dem_measure_of(&dem_measures[i], &c->fidelity);
+                    if (dem_measures[i].kind == DEM_MEASURE_PART)
+                        put_percent(out, value);
+                    else
+                        dem_page_number(out, value, 3);
+                }
                 dem_page_number(out, c->seconds, 3);
             }
             dem_page_row_end(out);

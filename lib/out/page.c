@@ -139,8 +139,12 @@ void dem_page_number(dem_buffer *out, double value, int digits)
     if (isfinite(value) && (value == 0 || fabs(value) >= 1e-3))
         dem_format_double(text, sizeof text, value, digits);
     else if (isfinite(value)) {
-        double unit = pow(10, floor(log10(fabs(value))) - 1);
-        dem_tick_label(round(value / unit) * unit, text, sizeof text);
+        int power = (int)floor(log10(fabs(value)) + 1e-9);
+        char digits_text[24];
+        dem_tick_label(copysign(pow(10, power), value), text, sizeof text);
+        dem_format_double(digits_text, sizeof digits_text, value / pow(10, power), digits);
+        dem_buffer_print(out, "<td>%s·%s</td>\n", digits_text, *text == '-' ? text + 1 : text);
+        return;
     }
     put_element(out, "td", text);
 }

@@ -22,7 +22,7 @@ void dem_page_command(dem_buffer *out, const char *text);
 void dem_page_table_begin(dem_buffer *out, const char *caption, const char *const *heads, size_t count);
 void dem_page_row_begin(dem_buffer *out, bool first_of_group);
 void dem_page_cell(dem_buffer *out, const char *text);
-/// A number of so many digits, a tiny one of two and a power of ten; a dash where it is not finite.
+/// A number of so many digits, a tiny one with a power of ten; a dash where it is not finite.
 void dem_page_number(dem_buffer *out, double value, int digits);
 void dem_page_row_end(dem_buffer *out);
 void dem_page_table_end(dem_buffer *out);

@@ -109,36 +109,70 @@ static dem_status colour_balls(const dem_ball *balls, size_t count, dem_colour *
     return hues ? DEM_OK : dem_fail_memory(error);
 }
 
+// grain and clump in one place, and the camera that holds both
+typedef struct pair {
+    dem_render_shape shapes[2];
+    dem_render_body bodies[2];
+    dem_render_scene scene;
+    dem_camera camera;
+    dem_colour *colours;
+} pair;
+
+static dem_status pair_make(pair *p, const dem_mesh *mesh, const dem_ball *balls, size_t count, dem_error *error)
+{
+    bool both = mesh->triangle_count > 0;
+    *p = (pair){0};
+    if (count == 0)
+        return dem_fail(error, DEM_USAGE, "there are no spheres to draw");
+    p->colours = dem_alloc(count, sizeof *p->colours);
+    if (!p->colours)
+        return dem_fail_memory(error);
+    p->shapes[0] = (dem_render_shape){.balls = balls, .ball_count = count, .ball_colours = p->colours};
+    p->shapes[1] = (dem_render_shape){.mesh = mesh};
+    p->bodies[0] = (dem_render_body){.shape = 0, .orientation = {1, 0, 0, 0}, .scale = 1};
+    p->bodies[1] = (dem_render_body){.shape = 1, .orientation = {1, 0, 0, 0}, .scale = 1, .colour = STONE};
+    p->scene = (dem_render_scene){p->shapes, both ? 2 : 1, p->bodies, both ? 2 : 1};
+    p->camera = choose_camera(both ? surface_spread(mesh) : balls_spread(balls, count));
+    dem_status status = colour_balls(balls, count, p->colours, error);
+    if (status != DEM_OK)
+        free(p->colours);
+    return status;
+}
+
 dem_status dem_picture_render(const dem_ctx *ctx, const dem_mesh *mesh, const dem_ball *balls, size_t count, int width,
                               int height, dem_image *image, dem_view *left, dem_error *error)
 {
-    bool pair = mesh->triangle_count > 0;
+    pair p;
     *image = (dem_image){0};
-    if (count == 0)
-        return dem_fail(error, DEM_USAGE, "there are no spheres to draw");
-    dem_colour *colours = dem_alloc(count, sizeof *colours);
-    if (!colours)
-        return dem_fail_memory(error);
-    dem_render_shape shapes[2] = {{.balls = balls, .ball_count = count, .ball_colours = colours}, {.mesh = mesh}};
-    dem_render_body bodies[2] = {{.shape = 0, .orientation = {1, 0, 0, 0}, .scale = 1},
-                                 {.shape = 1, .orientation = {1, 0, 0, 0}, .scale = 1, .colour = STONE}};
-    dem_render_scene scene = {shapes, pair ? 2 : 1, bodies, pair ? 2 : 1};
-    dem_camera camera = choose_camera(pair ? surface_spread(mesh) : balls_spread(balls, count));
+    DEM_TRY(pair_make(&p, mesh, balls, count, error));
+    bool both = p.scene.body_count == 2;
     // half of the picture holds both in one place; then they move apart by its breadth
-    dem_view view = dem_view_fit(&scene, &camera, pair ? width / 2 : width, height);
+    dem_view view = dem_view_fit(&p.scene, &p.camera, both ? width / 2 : width, height);
     if (left)
         *left = view;
-    if (pair) {
+    if (both) {
         double half = view.width * view.pixel / 2;
-        bodies[0].position = v3_scale(view.right, half);
-        bodies[1].position = v3_scale(view.right, -half);
+        p.bodies[0].position = v3_scale(view.right, half);
+        p.bodies[1].position = v3_scale(view.right, -half);
         view.width = width;
         view.radius += half;
     }
-    dem_status status = colour_balls(balls, count, colours, error);
-    if (status == DEM_OK)
-        status = dem_render(ctx, &scene, &view, image, error);
-    free(colours);
+    dem_status status = dem_render(ctx, &p.scene, &view, image, error);
+    free(p.colours);
+    return status;
+}
+
+dem_status dem_picture_render_part(const dem_ctx *ctx, const dem_mesh *mesh, const dem_ball *balls, size_t count,
+                                   dem_picture_part part, int width, int height, dem_image *image, dem_error *error)
+{
+    pair p;
+    *image = (dem_image){0};
+    DEM_TRY(pair_make(&p, mesh, balls, count, error));
+    dem_view view = dem_view_fit(&p.scene, &p.camera, width, height);
+    p.scene.bodies = &p.bodies[part == DEM_PICTURE_GRAIN ? p.scene.body_count - 1 : 0];
+    p.scene.body_count = 1;
+    dem_status status = dem_render(ctx, &p.scene, &view, image, error);
+    free(p.colours);
     return status;
 }
 
