@@ -65,8 +65,8 @@ static int list_methods(const cli_tool *tool)
     for (size_t i = 0; i < count; i++) {
         dem_buffer_print(&text, "%s: %s\n  %s\n", packers[i]->name, packers[i]->about, packers[i]->paper);
         for (size_t k = 0; k < packers[i]->parameter_count; k++) {
-            const dem_packer_parameter *p = &packers[i]->parameters[k];
-            dem_buffer_print(&text, "  %-12s [%s] default %g, %g to %g: %s\n", p->name, p->unit, p->value, p->low,
+            const dem_parameter *p = &packers[i]->parameters[k];
+            dem_buffer_print(&text, "  %-12s [%s] default %g, %g to %g: %s\n", p->name, p->unit, p->standard, p->low,
                              p->high, p->help);
         }
     }

@@ -33,13 +33,13 @@ static const char *kind_name(const void *user, size_t index)
     return kind ? kind->name : NULL;
 }
 
-static bool is_length(const dem_grain_param *p)
+static bool is_length(const dem_parameter *p)
 {
     return strcmp(p->unit, "m") == 0;
 }
 
 // "0 to 0.4, default 0.1"
-static void put_range(dem_buffer *out, const dem_grain_param *p)
+static void put_range(dem_buffer *out, const dem_parameter *p)
 {
     const char *unit = "";
     double factor = 1;
@@ -67,7 +67,7 @@ static size_t add_kinds(settings *s, cli_option *options, size_t count)
         snprintf(s->headings[k], sizeof s->headings[k], "Kind %s", kind->name);
         options[count++] = (cli_option){.help = s->headings[k]};
         for (size_t i = 0; i < kind->param_count; i++) {
-            const dem_grain_param *p = &kind->params[i];
+            const dem_parameter *p = &kind->params[i];
             dem_buffer range = {0};
             put_range(&range, p);
             snprintf(s->help[k][i], sizeof s->help[k][i], "%s (%s)", p->help, range.data ? range.data : "");
@@ -112,7 +112,7 @@ static void list_kinds_json(dem_buffer *out)
         dem_json_put_string(&json, "paper", kind->paper);
         dem_json_open_array(&json, "parameters", false);
         for (size_t i = 0; i < kind->param_count; i++) {
-            const dem_grain_param *p = &kind->params[i];
+            const dem_parameter *p = &kind->params[i];
             dem_json_open_object(&json, NULL);
             dem_json_put_string(&json, "name", p->name);
             dem_json_put_number(&json, "default", p->standard);

@@ -58,8 +58,14 @@ static void write_parameters(dem_buffer *out, const dem_pack_options *asked, con
     } else {
         dem_buffer_print(out, "{\"spheres\":%zu", asked->spheres);
     }
-    dem_buffer_print(out, ",\"effort\":\"%s\",\"moments\":\"%s\",\"moments_met\":\"%s\",\"side\":\"%s\"}",
+    dem_buffer_print(out, ",\"effort\":\"%s\",\"moments\":\"%s\",\"moments_met\":\"%s\",\"side\":\"%s\"",
                      efforts[asked->effort], moments[asked->moments], moments[pack->moments], sides[asked->side]);
+    for (size_t i = 0; i < pack->used_count; i++)
+        if (isfinite(pack->used[i].value)) {
+            dem_buffer_print(out, ",\"%s\":", pack->used[i].name);
+            dem_buffer_shortest(out, pack->used[i].value);
+        }
+    dem_buffer_text(out, "}");
 }
 
 // mass, centre, frame and inertia from the solid that was asked for; the union's own beside them

@@ -2,22 +2,15 @@
 #ifndef DEM_CLUMP_PACK_H
 #define DEM_CLUMP_PACK_H
 
+#include "base/parameter.h"
 #include "dem/clump.h"
-
-typedef struct dem_packer_parameter {
-    const char *name;
-    double value;       ///< default
-    double low, high;   ///< range, both ends allowed
-    const char *unit;   ///< "-" for a pure number
-    const char *help;
-} dem_packer_parameter;
 
 typedef struct dem_packer {
     const char *name;
     const char *paper;
     const char *about;
-    const dem_packer_parameter *parameters;
-    size_t parameter_count;
+    const dem_parameter *parameters;  ///< standard NAN: found for the number of spheres asked for
+    size_t parameter_count;           ///< at most DEM_PACK_VALUES
     /// Fills everything of `pack` but `seconds`; the options have been checked and completed.
     dem_status (*run)(const dem_ctx *ctx, const dem_mesh *mesh, const dem_pack_options *options, dem_pack *pack,
                       dem_error *error);
@@ -27,6 +20,9 @@ typedef struct dem_packer {
 const dem_packer *const *dem_packers(size_t *count);
 /// NULL: no packer of that name.
 const dem_packer *dem_packer_find(const char *name);
+
+/// What the options give for a parameter, its standard where they give nothing; the options have been checked.
+double dem_packer_value(const dem_packer *packer, const dem_pack_options *options, size_t parameter);
 
 extern const dem_packer dem_packer_optimal;
 

@@ -86,6 +86,13 @@ typedef enum dem_effort { DEM_EFFORT_FAST, DEM_EFFORT_DEFAULT, DEM_EFFORT_BEST }
 typedef enum dem_moments_kept { DEM_MOMENTS_FREE, DEM_MOMENTS_VOLUME, DEM_MOMENTS_EXACT } dem_moments_kept;
 typedef enum dem_side { DEM_SIDE_BOTH, DEM_SIDE_INSCRIBED, DEM_SIDE_OUTER } dem_side;
 
+/// A parameter of a packing method, by the name the registry gives it.
+typedef struct dem_pack_value {
+    const char *name;
+    double value;
+} dem_pack_value;
+enum { DEM_PACK_VALUES = 8 };  ///< most parameters of a method
+
 /// A packing to make. Zero-initialised fields take the defaults in brackets.
 typedef struct dem_pack_options {
     const char *method;       ///< registry name ["optimal"]
@@ -96,6 +103,8 @@ typedef struct dem_pack_options {
     dem_moments_kept moments; ///< set by dem_pack_defaults
     dem_side side;
     uint64_t seed;            ///< [1]
+    const dem_pack_value *values;  ///< parameters of the method; those not named take their defaults [none]
+    size_t value_count;
 } dem_pack_options;
 DEM_API dem_pack_options dem_pack_defaults(void);
 
@@ -107,6 +116,8 @@ typedef struct dem_pack {
     double moment_residual;   ///< largest relative residual of the moments met [-]
     double gap_estimate;      ///< IoU gap as the packer saw it [-]
     double seconds;
+    dem_pack_value used[DEM_PACK_VALUES];  ///< the parameters of the method as they were used, found ones too
+    size_t used_count;
 } dem_pack;
 
 /// Packs spheres into a repaired mesh. Same result for a given seed and any number of threads.
