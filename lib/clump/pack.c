@@ -83,15 +83,28 @@ static void complete_used(const dem_packer *packer, const dem_pack_options *opti
     }
 }
 
-static dem_status complete(dem_pack_options *options, dem_error *error)
+// every parameter has a value, and they decide how many spheres there are
+static bool sets_count(const dem_packer *packer, const dem_pack_options *options)
+{
+    for (size_t k = 0; packer->sets_count && k < packer->parameter_count; k++)
+        if (isnan(dem_packer_value(packer, options, k)))
+            return false;
+    return packer->sets_count;
+}
+
+dem_status dem_pack_complete(dem_pack_options *options, dem_error *error)
 {
     dem_pack_options defaults = dem_pack_defaults();
     if (!options->method)
         options->method = defaults.method;
-    if (!options->spheres)
-        options->spheres = defaults.spheres;
     if (!options->max_spheres)
         options->max_spheres = defaults.max_spheres;
+    const dem_packer *packer = dem_packer_find(options->method);
+    if (!packer)
+        return dem_fail(error, DEM_USAGE, "there is no packing method '%s'; --methods lists them", options->method);
+    DEM_TRY(check_values(packer, options, error));
+    if (!options->spheres)
+        options->spheres = sets_count(packer, options) ? options->max_spheres : defaults.spheres;
     if (!options->seed)
         options->seed = defaults.seed;
     if (options->spheres > MOST_SPHERES || options->max_spheres > MOST_SPHERES)
@@ -115,11 +128,8 @@ dem_status dem_clump_pack(const dem_ctx *ctx, const dem_mesh *mesh, const dem_pa
 {
     *pack = (dem_pack){.moment_residual = NAN, .gap_estimate = NAN};
     dem_pack_options options = *given;
-    DEM_TRY(complete(&options, error));
+    DEM_TRY(dem_pack_complete(&options, error));
     const dem_packer *packer = dem_packer_find(options.method);
-    if (!packer)
-        return dem_fail(error, DEM_USAGE, "there is no packing method '%s'; --methods lists them", options.method);
-    DEM_TRY(check_values(packer, &options, error));
     double start = seconds_now();
     dem_status status = packer->run(ctx, mesh, &options, pack, error);
     if (status != DEM_OK) {

@@ -11,6 +11,8 @@ typedef struct dem_packer {
     const char *about;
     const dem_parameter *parameters;  ///< standard NAN: found for the number of spheres asked for
     size_t parameter_count;           ///< at most DEM_PACK_VALUES
+    bool keeps_moments;               ///< the union can have the grain's moments
+    bool sets_count;                  ///< its parameters, all given, decide the number of spheres
     /// Fills everything of `pack` but `seconds`; the options have been checked and completed.
     dem_status (*run)(const dem_ctx *ctx, const dem_mesh *mesh, const dem_pack_options *options, dem_pack *pack,
                       dem_error *error);
@@ -21,6 +23,9 @@ const dem_packer *const *dem_packers(size_t *count);
 /// NULL: no packer of that name.
 const dem_packer *dem_packer_find(const char *name);
 
+/// Fills in the defaults (spheres 0: 50, or as many as the parameters given come to, up to max_spheres), having checked
+/// everything. Twice does no harm.
+dem_status dem_pack_complete(dem_pack_options *options, dem_error *error);
 /// What the options give for a parameter, its standard where they give nothing; the options have been checked.
 double dem_packer_value(const dem_packer *packer, const dem_pack_options *options, size_t parameter);
 

@@ -96,7 +96,8 @@ enum { DEM_PACK_VALUES = 8 };  ///< most parameters of a method
 /// A packing to make. Zero-initialised fields take the defaults in brackets.
 typedef struct dem_pack_options {
     const char *method;       ///< registry name ["optimal"]
-    size_t spheres;           ///< at most so many [50]; ignored when `gap` is given
+    size_t spheres;           ///< at most so many [50, or max_spheres where the method's parameters set the number];
+                              ///< ignored when `gap` is given
     double gap;               ///< fewest spheres whose IoU gap is at most this fraction [0: not asked]
     size_t max_spheres;       ///< bound of `gap` [2000]
     dem_effort effort;        ///< set by dem_pack_defaults
