@@ -11,6 +11,11 @@ enum { MOST_SPHERES = 100000 };
 
 static const dem_packer *const packers[] = {
     &dem_packer_optimal,
+    &dem_packer_bubble,
+    &dem_packer_favier,
+    &dem_packer_ferellec,
+    &dem_packer_euclidean,
+    &dem_packer_grid,
 };
 
 const dem_packer *const *dem_packers(size_t *count)
@@ -83,13 +88,12 @@ static void complete_used(const dem_packer *packer, const dem_pack_options *opti
     }
 }
 
-// every parameter has a value, and they decide how many spheres there are
-static bool sets_count(const dem_packer *packer, const dem_pack_options *options)
+bool dem_packer_sets_count(const dem_packer *packer, const dem_pack_options *options)
 {
-    for (size_t k = 0; packer->sets_count && k < packer->parameter_count; k++)
+    for (size_t k = 0; k < packer->count_parameters; k++)
         if (isnan(dem_packer_value(packer, options, k)))
             return false;
-    return packer->sets_count;
+    return packer->count_parameters > 0;
 }
 
 dem_status dem_pack_complete(dem_pack_options *options, dem_error *error)
@@ -104,7 +108,7 @@ dem_status dem_pack_complete(dem_pack_options *options, dem_error *error)
         return dem_fail(error, DEM_USAGE, "there is no packing method '%s'; --methods lists them", options->method);
     DEM_TRY(check_values(packer, options, error));
     if (!options->spheres)
-        options->spheres = sets_count(packer, options) ? options->max_spheres : defaults.spheres;
+        options->spheres = dem_packer_sets_count(packer, options) ? options->max_spheres : defaults.spheres;
     if (!options->seed)
         options->seed = defaults.seed;
     if (options->spheres > MOST_SPHERES || options->max_spheres > MOST_SPHERES)
