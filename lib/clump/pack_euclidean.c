@@ -3,14 +3,15 @@
 // it is the surface and the spheres before, each made smaller by the overlap allowed: with 0 the spheres touch, with 1
 // only the centre of one must not lie in another's.
 //
-// Distances are those to the triangles, not to the next voxel outside, and the centre is moved off its voxel to where
-// the distance is largest, so that voxels only decide which places are looked at.
+// Distances are those to the triangles and the centre is moved off its voxel to where the distance is largest, so that
+// voxels only decide which places are looked at. The transform of an image instead counts to the next voxel outside,
+// and its spheres stick out by up to a voxel, which fits better than inscribed ones: `margin` does the same.
 #include <stdlib.h>
 #include <string.h>
 
 #include "clump/pack_classic.h"
 
-enum { OVERLAP, VOXELS, RMIN };
+enum { OVERLAP, MARGIN, VOXELS, RMIN };
 enum { CHUNK = 128, FEWEST_VOXELS = 60000, VOXELS_PER_SPHERE = 1000, MOST_VOXELS = 500000 };
 enum { MOST_MOVES = 40 };
 
@@ -18,6 +19,7 @@ static const double smallest_radius = 1e-4;  // [d_eq]
 
 static const dem_parameter parameters[] = {
     [OVERLAP] = {"overlap", NAN, 0, 1, "-", "part of a sphere that others may reach into; 0: they touch"},
+    [MARGIN] = {"margin", NAN, 0, 1, "-", "how far spheres may stick out of the grain, in voxels"},
     [VOXELS] = {"voxels", NAN, 8, 128, "-", "voxels across the equivalent diameter"},
     [RMIN] = {"rmin", 0, 0, 0.5, "d_eq", "smallest radius"},
 };
@@ -37,6 +39,7 @@ typedef struct field {
     size_t count, chunk_count;
     double step;              // of the voxels
     double core;              // 1 - overlap
+    double margin;            // [d_eq]
     dem_ball *balls;
     size_t ball_count;
 } field;
@@ -145,7 +148,7 @@ static size_t farthest_voxel(const field *f)
 
 static double room_at(const field *f, dem_vec3 p)
 {
-    double room = dem_classic_depth(f->c, p);
+    double room = dem_classic_depth(f->c, p) + f->margin;
     for (size_t i = 0; i < f->ball_count; i++)
         room = smaller(room, v3_distance(p, f->balls[i].centre) - f->core * f->balls[i].radius);
     return room;
@@ -172,40 +175,61 @@ static dem_ball climb(const field *f, dem_vec3 from)
     return best;
 }
 
-static void fill(field *f, double overlap)
+// one packing; it is taken if it is better than those before
+static dem_status fill(field *f, double overlap, double margin, double *least, dem_error *error)
 {
-    double least = fmax(f->c->value[RMIN], smallest_radius);
+    dem_classic *c = f->c;
+    double smallest = fmax(c->value[RMIN], smallest_radius);
+    bool kept = false;
     f->core = 1 - overlap;
+    f->margin = margin * f->step;
     f->ball_count = 0;
-    memcpy(f->distance, f->depth, f->count * sizeof *f->distance);
+    for (size_t i = 0; i < f->count; i++)
+        f->distance[i] = f->depth[i] + (float)f->margin;
     for (size_t k = 0; k < f->chunk_count; k++)
         lower_chunk(f, k, NULL);
-    while (f->ball_count < f->c->options->spheres) {
+    while (f->count && f->ball_count < c->options->spheres) {
         dem_ball ball = climb(f, f->points[farthest_voxel(f)]);
-        if (!(ball.radius >= least))
+        if (!(ball.radius >= smallest))
             break;
         f->balls[f->ball_count++] = ball;
         lower_field(f, ball);
     }
+    DEM_TRY(dem_classic_offer(c, f->balls, f->ball_count, least, &kept, error));
+    if (kept) {
+        c->value[OVERLAP] = overlap;
+        c->value[MARGIN] = margin;
+    }
+    return DEM_OK;
+}
+
+// what is not given is found: the overlap with half the margin, then the margin with that overlap
+static dem_status search(field *f, dem_error *error)
+{
+    static const double overlaps[] = {0, 0.2, 0.4, 0.5, 0.6, 0.7, 0.8, 0.9, 1}, margins[] = {0, 0.25, 0.75, 1};
+    enum { OVERLAPS = sizeof overlaps / sizeof *overlaps, MARGINS = sizeof margins / sizeof *margins };
+    dem_classic *c = f->c;
+    double overlap = c->value[OVERLAP], margin = c->value[MARGIN], least = INFINITY;
+    if (c->options->side == DEM_SIDE_INSCRIBED)
+        margin = 0;
+    int first = isnan(overlap) ? OVERLAPS : 1, second = isnan(margin) ? MARGINS : 0;
+    for (int k = 0; k < first; k++) {
+        DEM_TRY(fill(f, isnan(overlap) ? overlaps[k] : overlap, isnan(margin) ? 0.5 : margin, &least, error));
+        DEM_TRY(dem_classic_go_on(c, 0.3 + 0.7 * (k + 1) / (first + second), error));
+    }
+    for (int k = 0; k < second; k++) {
+        DEM_TRY(fill(f, c->value[OVERLAP], margins[k], &least, error));
+        DEM_TRY(dem_classic_go_on(c, 0.3 + 0.7 * (first + k + 1) / (first + second), error));
+    }
+    return DEM_OK;
 }
 
 static dem_status place(dem_classic *c, dem_error *error)
 {
-    enum { OVERLAPS = 11 };
-    double given = c->value[OVERLAP], least = INFINITY;
-    int count = isnan(given) ? OVERLAPS : 1;
     field f;
     dem_status status = open_field(c, &f, error);
-    for (int k = 0; k < count && f.count && status == DEM_OK; k++) {
-        double overlap = isnan(given) ? (double)k / (OVERLAPS - 1) : given;
-        bool kept = false;
-        fill(&f, overlap);
-        status = dem_classic_offer(c, f.balls, f.ball_count, &least, &kept, error);
-        if (kept)
-            c->value[OVERLAP] = overlap;
-        if (status == DEM_OK)
-            status = dem_classic_go_on(c, 0.3 + 0.7 * (k + 1) / count, error);
-    }
+    if (status == DEM_OK)
+        status = search(&f, error);
     close_field(&f);
     return status;
 }
@@ -214,7 +238,7 @@ const dem_packer dem_packer_euclidean = {
     .name = "euclidean",
     .paper = "Angelidakis, Nadimi, Otsubo & Utili 2021, SoftwareX 15, 100735, doi:10.1016/j.softx.2021.100735",
     .about = "The largest inscribed sphere, then again and again the largest that fits beside those before with some "
-             "overlap, by the distance transform of voxels. The overlap not given is that of least gap.",
+             "overlap, by the distance transform of voxels. Overlap and margin not given are those of least gap.",
     .parameters = parameters,
     .parameter_count = sizeof parameters / sizeof *parameters,
     .order = "largest first",
