@@ -9,6 +9,7 @@
 #include "base/file.h"
 #include "base/hash.h"
 #include "base/memory.h"
+#include "clump/pack.h"
 #include "out/export.h"
 
 // the caller's log and progress, with the warnings kept for the report; a warning belongs to the result that is
@@ -165,6 +166,10 @@ static dem_status finish_body(job *j, job_result *r, dem_mesh *mesh, size_t body
     DEM_TRY(dem_clump_make(&j->ctx, mesh, &make, &r->clump, &r->pack, error));
     free(r->pack.balls);
     r->pack.balls = NULL;
+    if (o->moments_asked && make.pack.moments != DEM_MOMENTS_FREE && !dem_packer_find(make.pack.method)->keeps_moments)
+        dem_log(&j->ctx, DEM_LOG_WARNING,
+                "the method %s cannot give the spheres' union the grain's moments; the clump's own mass and inertia "
+                "are the mesh's all the same", make.pack.method);
     return write_outputs(j, r, mesh, body, bodies, error);
 }
 

@@ -11,6 +11,7 @@
 typedef struct job_options {
     dem_make_options make;
     dem_repair_options repair;
+    bool moments_asked;            ///< explicitly
     bool split;
     double unit;                   ///< length of one unit of the file [m]
     const char *unit_name;

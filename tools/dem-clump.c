@@ -9,6 +9,7 @@
 #include "base/memory.h"
 #include "base/units.h"
 #include "cli.h"
+#include "cli_registry.h"
 #include "clump/pack.h"
 #include "clump_job.h"
 #include "clump_report.h"
@@ -24,6 +25,9 @@ typedef struct arguments {
     bool inscribed, outer, split;
     const char *method, *methods, *unit, *sweep;
     cli_texts outputs, formats, targets;
+    cli_registry known;  // the packing methods
+    dem_pack_value values[DEM_PACK_VALUES];
+    size_t value_count;
 } arguments;
 
 static const char about[] =
@@ -53,26 +57,37 @@ static arguments default_arguments(void)
                        .max_spheres = (long)make.pack.max_spheres,
                        .density = make.density,
                        .effort = make.pack.effort,
-                       .moments = make.pack.moments,
+                       .moments = -1,  // not given
                        .mass_from = make.mass_from,
-                       .method = make.pack.method};
+                       .method = make.pack.method,
+                       .known = {.what = "method", .unset = "found for the number of spheres"}};
+}
+
+static void add_methods(cli_registry *methods)
+{
+    size_t count;
+    const dem_packer *const *packers = dem_packers(&count);
+    for (size_t i = 0; i < count && i < CLI_ENTRIES; i++)
+        methods->entries[methods->count++] = (cli_entry){packers[i]->name, packers[i]->about, packers[i]->paper,
+                                                         packers[i]->parameters, packers[i]->parameter_count};
 }
 
 // `--methods`: what the registry knows
-static int list_methods(const cli_tool *tool)
+static int list_methods(const cli_tool *tool, const arguments *a)
 {
     dem_buffer text = {0};
-    size_t count;
-    const dem_packer *const *packers = dem_packers(&count);
-    for (size_t i = 0; i < count; i++) {
-        dem_buffer_print(&text, "%s: %s\n  %s\n", packers[i]->name, packers[i]->about, packers[i]->paper);
-        for (size_t k = 0; k < packers[i]->parameter_count; k++) {
-            const dem_packer_parameter *p = &packers[i]->parameters[k];
-            dem_buffer_print(&text, "  %-12s [%s] default %g, %g to %g: %s\n", p->name, p->unit, p->value, p->low,
-                             p->high, p->help);
-        }
-    }
+    (a->common.json ? cli_registry_list_json : cli_registry_list)(&a->known, &text);
     return cli_print(tool, &text);
+}
+
+// the parameters given for the method; `values` has room for DEM_PACK_VALUES
+static size_t given_values(const cli_registry *methods, const char *method, dem_pack_value *values)
+{
+    size_t at = cli_registry_find(methods, method), count = 0;
+    for (size_t i = 0; i < methods->entries[at].parameter_count; i++)
+        if (!isnan(methods->values[at][i]))
+            values[count++] = (dem_pack_value){methods->entries[at].parameters[i].name, methods->values[at][i]};
+    return count;
 }
 
 static job_options job_options_from(const arguments *a)
@@ -88,9 +103,13 @@ static job_options job_options_from(const arguments *a)
     o.make.pack.max_spheres = (size_t)a->max_spheres;
     o.make.pack.gap = a->gap;
     o.make.pack.effort = (dem_effort)a->effort;
-    o.make.pack.moments = (dem_moments_kept)a->moments;
+    if (a->moments >= 0)
+        o.make.pack.moments = (dem_moments_kept)a->moments;
     o.make.pack.side = a->inscribed ? DEM_SIDE_INSCRIBED : a->outer ? DEM_SIDE_OUTER : DEM_SIDE_BOTH;
     o.make.pack.seed = (uint64_t)a->common.seed;
+    o.make.pack.values = a->values;
+    o.make.pack.value_count = a->value_count;
+    o.moments_asked = a->moments >= 0;
     o.repair = (dem_repair_options){.repair = (dem_repair)a->repair, .keep = (dem_keep)a->keep,
                                     .wrap_detail = a->wrap_detail};
     if (a->split)
@@ -272,6 +291,30 @@ static int sort_sweep_outputs(const cli_tool *tool, job_options *job, bool sever
     return 0;
 }
 
+// every series has the parameters given for its method; one that no series has is a mistake
+static int share_values(const cli_tool *tool, const cli_registry *known, dem_sweep *plan)
+{
+    const char *used[DEM_SWEEP_SERIES * DEM_PACK_VALUES];
+    size_t used_count = 0;
+    for (size_t s = 0; s < plan->series_count; s++) {
+        dem_sweep_series *series = &plan->series[s];
+        series->value_count = given_values(known, series->packer->name, series->values);
+        for (size_t i = 0; i < series->value_count; i++)
+            used[used_count++] = series->values[i].name;
+    }
+    for (size_t k = 0; k < known->count; k++)
+        for (size_t i = 0; i < known->entries[k].parameter_count; i++) {
+            const char *name = known->entries[k].parameters[i].name;
+            bool given = !isnan(known->values[k][i]), found = false;
+            for (size_t u = 0; given && u < used_count; u++)
+                found |= strcmp(used[u], name) == 0;
+            if (given && !found)
+                return cli_wrong_usage(tool, "--%s belongs to method %s, which is not in this sweep", name,
+                                       known->entries[k].name);
+        }
+    return 0;
+}
+
 static int read_plan(const cli_tool *tool, const arguments *a, dem_sweep *plan)
 {
     dem_error error;
@@ -284,7 +327,7 @@ static int read_plan(const cli_tool *tool, const arguments *a, dem_sweep *plan)
         return cli_wrong_usage(tool, "--sweep: %s", error.text);
     if (dem_sweep_read_series(plan, methods, (dem_effort)a->effort, &error) != DEM_OK)
         return cli_wrong_usage(tool, "--methods: %s", error.text);
-    return 0;
+    return share_values(tool, &a->known, plan);
 }
 
 static int run_sweep(const cli_tool *tool, const arguments *a, job_options *job, const cli_texts *inputs, char **names,
@@ -336,8 +379,13 @@ static int run_batch(const cli_tool *tool, const arguments *a, job_options *opti
     return status;
 }
 
-static int run(const cli_tool *tool, const arguments *a, const cli_texts *inputs, const char *command)
+static int run(const cli_tool *tool, arguments *a, const cli_texts *inputs, const char *command)
 {
+    int wrong = a->sweep ? 0 : cli_registry_check(tool, &a->known, a->method, "methods");
+    if (wrong)
+        return wrong;
+    if (!a->sweep)
+        a->value_count = given_values(&a->known, a->method, a->values);
     job_options options = job_options_from(a);
     dem_error error;
     dem_target *targets = NULL;
@@ -410,14 +458,18 @@ int main(int argc, char **argv)
          "frame of xyzr, vtp, stl (default principal; mesh: the file's own, in metres)", &a.frame, 0, 0},
         CLI_COMMON_OPTIONS(a.common),
     };
-    const cli_tool tool = {"dem-clump", "MESH... [options]", about, options, sizeof options / sizeof *options, epilogue};
+    static cli_option all[sizeof options / sizeof *options + CLI_REGISTRY_OPTIONS];
+    memcpy(all, options, sizeof options);
+    add_methods(&a.known);
+    size_t count = cli_registry_options(&a.known, all, sizeof options / sizeof *options);
+    const cli_tool tool = {"dem-clump", "MESH... [options]", about, all, count, epilogue};
     cli_texts inputs = {0};
     int status;
     if (cli_parse(&tool, argc, argv, &inputs, &status) == CLI_GO) {
         dem_buffer command = {0};
         put_command(&command, argc, argv);
         if (a.methods && !*a.methods && !a.sweep)
-            status = list_methods(&tool);
+            status = list_methods(&tool, &a);
         else if (inputs.count == 0)
             status = cli_wrong_usage(&tool, "no mesh given");
         else

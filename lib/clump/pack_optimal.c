@@ -91,5 +91,6 @@ const dem_packer dem_packer_optimal = {
     .name = "optimal",
     .about = "Least symmetric difference between grain and union: greedy medial balls, pruned and relaxed, then polished "
              "on line integrals with the union's moments equal to the grain's.",
+    .keeps_moments = true,
     .run = run_optimal,
 };

@@ -211,6 +211,8 @@ dem_status dem_sweep_run(const dem_ctx *ctx, const dem_mesh *mesh, const dem_pac
             options.method = series->packer->name;
             options.effort = series->effort;
             options.spheres = sweep->counts[k];
+            options.values = series->values;
+            options.value_count = series->value_count;
             options.gap = 0;
             options.target_count = 0;
             DEM_TRY(run_cell(&run, mesh, &options, error));

@@ -11,6 +11,8 @@ typedef struct dem_sweep_series {
     char name[48];  ///< as asked for: "optimal:fast"
     const dem_packer *packer;
     dem_effort effort;
+    dem_pack_value values[DEM_PACK_VALUES];  ///< parameters of the method, if any are to be given
+    size_t value_count;
 } dem_sweep_series;
 
 /// One packing and what it measures.

@@ -2,19 +2,12 @@
 #ifndef DEM_MESH_GRAIN_H
 #define DEM_MESH_GRAIN_H
 
+#include "base/parameter.h"
 #include "base/random.h"
 #include "base/status.h"
 #include "dem/mesh.h"
 
 enum { DEM_GRAIN_PARAMS = 16 };
-
-typedef struct dem_grain_param {
-    const char *name;
-    double standard;  ///< used when none is given; NAN: drawn from the seed
-    double low, high;
-    const char *unit;  ///< "-" pure number, "m" length, "count" whole number
-    const char *help;
-} dem_grain_param;
 
 /// What a kind is given to work with.
 typedef struct dem_grain_request {
@@ -27,7 +20,7 @@ typedef struct dem_grain_request {
 /// there meets it once. Its size matters only where a parameter is a length.
 typedef struct dem_grain_kind {
     const char *name, *paper, *about;
-    const dem_grain_param *params;
+    const dem_parameter *params;
     size_t param_count;
     dem_status (*make)(const dem_ctx *ctx, const dem_grain_request *request, dem_mesh *mesh, dem_error *error);
 } dem_grain_kind;

@@ -96,10 +96,18 @@ DEM_API dem_status dem_target_read(const char *text, dem_target *target, dem_err
 /// The largest of error / bound; at most 1: all targets hold.
 DEM_API double dem_target_ratio(const dem_target *targets, size_t count, const dem_fidelity *fidelity);
 
+/// A parameter of a packing method, by the name the registry gives it.
+typedef struct dem_pack_value {
+    const char *name;
+    double value;
+} dem_pack_value;
+enum { DEM_PACK_VALUES = 8 };  ///< most parameters of a method
+
 /// A packing to make. Zero-initialised fields take the defaults in brackets.
 typedef struct dem_pack_options {
     const char *method;       ///< registry name ["optimal"]
-    size_t spheres;           ///< at most so many [50]; ignored when `gap` or targets are given
+    size_t spheres;           ///< at most so many [50, or max_spheres where the method's parameters set the number];
+                              ///< ignored when `gap` or targets are given
     double gap;               ///< fewest spheres whose IoU gap is at most this fraction [0: not asked]
     const dem_target *targets;  ///< [target_count] fewest spheres for which these hold, too
     size_t target_count;
@@ -108,6 +116,8 @@ typedef struct dem_pack_options {
     dem_moments_kept moments; ///< set by dem_pack_defaults
     dem_side side;
     uint64_t seed;            ///< [1]
+    const dem_pack_value *values;  ///< parameters of the method; those not named take their defaults [none]
+    size_t value_count;
 } dem_pack_options;
 DEM_API dem_pack_options dem_pack_defaults(void);
 
@@ -120,6 +130,8 @@ typedef struct dem_pack {
     double moment_residual;   ///< largest relative residual of the moments met [-]
     double gap_estimate;      ///< IoU gap as the packer saw it [-]
     double seconds;
+    dem_pack_value used[DEM_PACK_VALUES];  ///< the parameters of the method as they were used, found ones too
+    size_t used_count;
 } dem_pack;
 
 /// Packs spheres into a repaired mesh. Same result for a given seed and any number of threads.
