@@ -5,8 +5,6 @@
 
 #include "base/status.h"
 #include "clump/farthest.h"
-#include "clump/fidelity.h"
-#include "clump/pack_target.h"
 
 // of the lattice that ranks choices
 enum { FEWEST_POINTS = 20000, POINTS_PER_SPHERE = 300, MOST_POINTS = 200000 };
@@ -124,22 +122,6 @@ static dem_status place_count(const dem_ctx *ctx, const dem_pack_grain *grain, c
     return status;
 }
 
-// a gap asked for, with parameters that leave nothing to choose
-static dem_status place_given(const dem_ctx *ctx, const dem_pack_grain *grain, const dem_pack_options *options,
-                              dem_pack *pack, dem_error *error)
-{
-    dem_pack_options most = *options;
-    most.spheres = options->max_spheres;
-    DEM_TRY(place_count(ctx, grain, &most, pack, error));
-    DEM_TRY(dem_fidelity_gap(ctx, grain->mesh, pack->balls, pack->count, 0, &pack->gap_estimate, NULL, error));
-    pack->reached = pack->gap_estimate <= options->gap;
-    if (!pack->reached)
-        dem_log(ctx, DEM_LOG_WARNING,
-                "the parameters given come to a gap of %.3g %%, not to the %.3g %% asked for; leave one out and it is "
-                "searched for", 100 * pack->gap_estimate, 100 * options->gap);
-    return DEM_OK;
-}
-
 dem_status dem_classic_run(const dem_ctx *ctx, const dem_mesh *mesh, const dem_pack_options *options, dem_pack *pack,
                            dem_error *error)
 {
@@ -150,13 +132,7 @@ dem_status dem_classic_run(const dem_ctx *ctx, const dem_mesh *mesh, const dem_p
                         packer->name);
     dem_pack_grain grain;
     DEM_TRY(dem_pack_grain_open(mesh, &grain, error));
-    dem_status status;
-    if (!(options->gap > 0))
-        status = place_count(ctx, &grain, options, pack, error);
-    else if (dem_packer_sets_count(packer, options))
-        status = place_given(ctx, &grain, options, pack, error);
-    else
-        status = dem_pack_target(ctx, &grain, options, place_count, pack, error);
+    dem_status status = place_count(ctx, &grain, options, pack, error);
     dem_pack_grain_close(&grain);
     return status;
 }

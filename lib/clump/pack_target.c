@@ -31,6 +31,7 @@ typedef struct search {
     dem_target targets[MOST_TARGETS];
     size_t target_count;
     bool gap_only;
+    bool given;         // the parameters leave nothing to search
     dem_ctx inner;      // of the run at hand: keeps messages, scales the progress
     double begin, end;  // of its progress
     run_notes notes, best_notes;
@@ -153,7 +154,9 @@ static void warn_missed(const search *s)
                  dem_measure_shown(m, s->targets[i].bound), *m->unit ? " " : "", m->unit);
     }
     dem_log(s->ctx, DEM_LOG_WARNING, "%zu spheres come to %s asked for; %s", s->best.count, missed,
-            s->best.interrupted ? "the search was interrupted" : "allow more spheres or ask for less");
+            s->best.interrupted ? "the search was interrupted"
+            : s->given          ? "leave out a parameter of the method and it is searched for"
+                                : "allow more spheres or ask for less");
 }
 
 dem_status dem_pack_target(const dem_ctx *ctx, const dem_mesh *mesh, const dem_packer *packer,
@@ -164,8 +167,10 @@ dem_status dem_pack_target(const dem_ctx *ctx, const dem_mesh *mesh, const dem_p
     DEM_TRY(set_targets(&s, options, error));
     s.options.gap = 0;
     s.options.target_count = 0;
-    dem_fewest_try best;
-    dem_status status = dem_fewest_search(first_guess(&s), options->max_spheres, attempt, &s, &best, error);
+    dem_fewest_try best = {.asked = options->max_spheres, .worst = INFINITY};
+    s.given = dem_packer_sets_count(packer, options);
+    dem_status status = s.given ? attempt(&s, &best, error)
+                                : dem_fewest_search(first_guess(&s), options->max_spheres, attempt, &s, &best, error);
     s.best.interrupted = status == DEM_INTERRUPTED;
     if (status == DEM_OK && !s.best.balls)
         status = dem_fail(error, s.failed.code, "%s", s.failed.text);

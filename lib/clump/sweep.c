@@ -13,6 +13,8 @@
 
 enum { MOST_SPHERES = 100000, MEASURING = 40 };  // measuring takes as long as packing so many spheres
 
+static const double packing_part = 0.8;  // of the progress of a packing and its measuring
+
 static const char *const efforts[] = {"fast", "default", "best"};
 
 static const char *packer_name(const void *unused, size_t index)
@@ -133,6 +135,7 @@ typedef struct cell_run {
     dem_sweep_cell *cell;
     char what[96];
     double begin, length;  // of its part in the progress
+    double furthest;       // told of it: it never goes back
     bool stopped;
 } cell_run;
 
@@ -148,7 +151,8 @@ static bool pass_progress(void *user, const char *what, double fraction)
 {
     cell_run *run = user;
     (void)what;
-    run->stopped |= dem_progress(run->ctx, run->what, run->begin + fraction * run->length);
+    run->furthest = fmax(run->furthest, packing_part * fraction);
+    run->stopped |= dem_progress(run->ctx, run->what, run->begin + run->furthest * run->length);
     return run->stopped;
 }
 
