@@ -13,7 +13,7 @@
 #include "out/plot.h"
 #include "out/xml.h"
 
-enum { PICTURE_WIDTH = 380, PICTURE_HEIGHT = 330, MOST_PICTURES = 4, COLUMNS = 3 };
+enum { PICTURE_WIDTH = 440, PICTURE_HEIGHT = 380, MOST_PICTURES = 4, COLUMNS = 3 };
 
 static const double least_percent = 1e-6;  // what is less is noise of rounding
 static const double floor_shown = 1e-4;    // [%] moments that are exact are noise far below
@@ -74,9 +74,9 @@ static bool curves_make(curves *c, const sweep_grain *g)
 static dem_plot plot_of(const curves *c, const sweep_grain *g, size_t measure, bool against_seconds)
 {
     const dem_plot_series *all = against_seconds ? c->seconds : c->spheres;
-    bool exact = dem_measures[measure].kind == DEM_MEASURE_PART && dem_measures[measure].usual == 0;
+    bool part = dem_measures[measure].kind == DEM_MEASURE_PART;
     return (dem_plot){{against_seconds ? "packing time [s]" : "spheres", true, 0},
-                      {c->titles[measure], true, exact ? floor_shown : 0},
+                      {c->titles[measure], true, part ? floor_shown : 0},
                       all + measure * g->sweep.series_count,
                       g->sweep.series_count};
 }
@@ -438,7 +438,7 @@ static void page_messages(dem_buffer *out, const sweep_grain *g)
             if (!any)
                 dem_page_list_begin(out);
             any = true;
-            snprintf(name, sizeof name, "%s, %zu:", g->sweep.series[s].name, g->sweep.counts[k]);
+            snprintf(name, sizeof name, "%s, %zu", g->sweep.series[s].name, g->sweep.counts[k]);
             dem_page_item(out, name, c->message);
         }
     if (any)

@@ -13,7 +13,7 @@ static const char style[] =
     "font: 15px/1.5 Helvetica, Arial, 'Liberation Sans', sans-serif; }\n"
     "h1 { font-size: 30px; line-height: 1.2; margin: 0; letter-spacing: -0.01em; color: #14161a; }\n"
     "p.subtitle { font-size: 17px; color: #646973; margin: 6px 0 28px; padding-bottom: 18px; "
-    "border-bottom: 2px solid #14161a; }\n"
+    "border-bottom: 2px solid #14161a; max-width: none; }\n"
     "h2 { font-size: 19px; margin: 40px 0 10px; color: #14161a; }\n"
     "p, li { max-width: 820px; }\n"
     "ul { padding-left: 20px; }\n"
@@ -28,7 +28,7 @@ static const char style[] =
     "th:first-child, td:first-child, td.text { text-align: left; }\n"
     "td.long { white-space: normal; min-width: 180px; }\n"
     "tr.group td { border-top: 1px solid #d4d7dd; }\n"
-    "tbody tr:last-child td { border-bottom: 1.5px solid #14161a; }\n"
+    "tbody > tr:last-child > td { border-bottom: 1.5px solid #14161a; }\n"
     "figure { margin: 12px 0; }\n"
     "figcaption { font-size: 13px; color: #646973; max-width: 820px; }\n"
     "svg { max-width: 100%; height: auto; display: block; }\n"
@@ -37,7 +37,7 @@ static const char style[] =
     "color: #4a4e57; }\n"
     "table.grid img { width: 100%; max-width: 420px; display: block; margin: 0 auto; }\n"
     "table.halves { width: 100%; border: 0; margin: 0; }\n"
-    "table.halves > tbody > tr > td { border: 0; padding: 0 28px 0 0; text-align: left; vertical-align: top; "
+    "table.halves > tbody > tr > td { border: 0 !important; padding: 0 28px 0 0; text-align: left; vertical-align: top; "
     "white-space: normal; font-size: 15px; }\n"
     "footer { margin-top: 44px; padding-top: 10px; border-top: 1px solid #d4d7dd; font-size: 12.5px; color: #646973; "
     "}\n"
@@ -94,7 +94,7 @@ void dem_page_item(dem_buffer *out, const char *term, const char *text)
     if (term) {
         dem_buffer_text(out, "<b>");
         dem_xml_text(out, term);
-        dem_buffer_text(out, "</b> ");
+        dem_buffer_text(out, ":</b> ");
     }
     dem_xml_text(out, text);
     dem_buffer_text(out, "</li>\n");
