@@ -192,7 +192,7 @@ static void draw_series(const panel *p, size_t number)
         dem_buffer_text(p->out, begun ? " " : "<polyline points=\"");
         begun = true;
         dem_xml_number(p->out, at_x(p, s->x[i]));
-        dem_buffer_text(p->out, ",");
+        dem_buffer_text(p->out, " ");
         dem_xml_number(p->out, at_y(p, height_of(p->plot, s->y[i])));
     }
     if (begun)
