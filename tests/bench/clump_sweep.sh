@@ -40,7 +40,7 @@ for mesh in "$@"; do
             for (i = 1; i <= many; i++) {
                 n = order[i]
                 printf "%-22s %7d | %-11s %9.3f %9.2f | %9.3f %9.2f | %6.2f\n", substr(grain, 1, 22), n, method[n],
-                    100 * best[n], best_s[n], 100 * ours[n], ours_s[n], ours[n] > 0 ? best[n] / ours[n] : 0
+                    100 * best[n], best_s[n], 100 * ours[n], ours_s[n], (ours[n] > 0 ? best[n] / ours[n] : 0)
             }
         }' "$keep/$name.csv"
 done
