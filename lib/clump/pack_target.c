@@ -55,7 +55,7 @@ static bool pass_progress(void *user, const char *what, double fraction)
 {
     const search *s = user;
     char text[80];
-    snprintf(text, sizeof text, "%.24s, %zu spheres tried,", what, s->options.spheres);
+    snprintf(text, sizeof text, "%.24s, trying %zu spheres,", what, s->options.spheres);
     return dem_progress(s->ctx, text, s->begin + fraction * (s->end - s->begin));
 }
 

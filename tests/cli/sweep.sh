@@ -104,4 +104,17 @@ status=$?
 [ $status = 130 ] || fail "interrupted: status $status: $(cat err)"
 [ "$(grep -c ',done,' i.csv)" -ge 1 ] || fail "interrupted: nothing written"
 grep -q 'Interrupted before the pictures' i.html || [ "${DEM_EMBREE:-1}" = 0 ] || fail "interrupted: pictures"
+
+# a search that is stopped leaves the best so far, once there is one
+for seconds in 3 12 40 120; do
+    "$tools/dem-clump" "$grain" --effort fast --target gap=0.05% --max-spheres 20000 -q -o t.json 2>err &
+    child=$!
+    sleep $seconds
+    kill -INT $child 2>/dev/null
+    wait $child
+    status=$?
+    [ $status = 130 ] || fail "interrupted search: status $status: $(cat err)"
+    [ -s t.json ] && break
+done
+grep -q '"spheres"' t.json || fail "the interrupted search left nothing"
 finish
