@@ -263,6 +263,9 @@ static int run(const cli_tool *tool, arguments *a, const cli_texts *inputs)
     dem_error error;
     const char *table = NULL;
     bool several = inputs->count > 1;
+    dem_pack_options packing = options.make.pack;  // the job completes its own
+    if (dem_pack_complete(&packing, &error) != DEM_OK)
+        return cli_wrong_usage(tool, "%s", error.text);
     if (a->unit && dem_unit(a->unit, DEM_DIMENSION_LENGTH, &options.unit, &error) != DEM_OK)
         return cli_wrong_usage(tool, "--unit: %s", error.text);
     if (a->inscribed && a->outer)

@@ -82,13 +82,11 @@ static dem_status set_depths(field *f, dem_error *error)
 
 static dem_status open_field(dem_classic *c, field *f, dem_error *error)
 {
-    double across = c->value[VOXELS], wanted = DEM_PI / 6 * across * across * across;
-    if (isnan(across)) {
-        wanted = fmin(fmax(FEWEST_VOXELS, (double)VOXELS_PER_SPHERE * (double)c->options->spheres), MOST_VOXELS);
+    double wanted = fmin(fmax(FEWEST_VOXELS, (double)VOXELS_PER_SPHERE * (double)c->options->spheres), MOST_VOXELS);
+    if (isnan(c->value[VOXELS]))
         c->value[VOXELS] = round(cbrt(6 * wanted / DEM_PI));
-    }
     dem_lattice lattice;
-    DEM_TRY(dem_lattice_build(c->grain, (size_t)wanted, &lattice, error));
+    DEM_TRY(dem_lattice_build(c->grain, (size_t)(DEM_PI / 6 * pow(c->value[VOXELS], 3)), &lattice, error));
     *f = (field){.c = c, .count = lattice.inside_count, .step = lattice.rows.step};
     f->chunk_count = (f->count + CHUNK - 1) / CHUNK;
     f->points = dem_alloc(f->count, sizeof *f->points);
@@ -174,18 +172,21 @@ static double room_at(const field *f, size_t near_count, dem_vec3 p, double enou
     return smaller(room, f->margin - dem_mesh_level(&f->c->grain->tree, p, limit, &closest));
 }
 
-// steps along the axes uphill from a voxel, halved where none leads up
+// steps along axes and diagonals uphill from a voxel, halved where none leads up
 static dem_ball climb(field *f, size_t voxel)
 {
     dem_vec3 from = f->points[voxel];
+    enum { DIRECTIONS = 14 };
+    static const dem_vec3 directions[DIRECTIONS] = {{1, 0, 0}, {-1, 0, 0}, {0, 1, 0}, {0, -1, 0}, {0, 0, 1}, {0, 0, -1},
+                                                    {.6, .6, .6}, {.6, .6, -.6}, {.6, -.6, .6}, {-.6, .6, .6},
+                                                    {-.6, -.6, -.6}, {-.6, -.6, .6}, {-.6, .6, -.6}, {.6, -.6, -.6}};
     double step = f->step / 2, reach = MOST_STEPS * step, depth = f->depth[voxel];
     size_t near = find_near(f, from, reach, f->near);
     dem_ball best = {from, room_at(f, near, from, -INFINITY, INFINITY)};
     for (int move = 0; move < MOST_MOVES && step > f->step / 64; move++) {
         dem_ball next = best;
-        for (int k = 0; k < 6; k++) {
-            dem_vec3 p = best.centre;
-            v3_set(&p, k / 2, v3_get(p, k / 2) + (k & 1 ? step : -step));
+        for (int k = 0; k < DIRECTIONS; k++) {
+            dem_vec3 p = v3_along(best.centre, step, directions[k]);
             double moved = v3_distance(p, from);
             if (moved > reach)
                 continue;

@@ -10,7 +10,7 @@
 #include "clump/pack_classic.h"
 
 enum { DMIN, RMIN, RSTEP, PMAX };
-enum { FEWEST_SEEDS = 8000, SEEDS_PER_SPHERE = 40, MOST_SEEDS = 40000 };
+enum { SEEDS = 16000 };
 
 static const double smallest_step = 1e-6;  // no step at all is meant below
 
@@ -74,10 +74,9 @@ static void shuffle(seeds *all, uint64_t seed)
 static dem_status place(dem_classic *c, dem_error *error)
 {
     static const double radii[] = {0,    0.01, 0.015, 0.02, 0.025, 0.03, 0.035, 0.04, 0.05, 0.06, 0.07, 0.08,
-                                   0.09, 0.1,  0.115, 0.13, 0.145, 0.16, 0.18,  0.2,  0.23, 0.26, 0.3,  0.35, 0.4};
-    double wanted = fmax(FEWEST_SEEDS, (double)SEEDS_PER_SPHERE * (double)c->options->spheres);
+                                   0.09, 0.1,  0.115, 0.13, 0.145, 0.16, 0.18,  0.2,  0.23, 0.26, 0.3,  0.35, 0.4, 0.45, 0.48};
     seeds all = {.step = c->value[RSTEP]};
-    DEM_TRY(dem_classic_tangents(c, (size_t)fmin(wanted, MOST_SEEDS), &all.items, &all.count, error));
+    DEM_TRY(dem_classic_tangents(c, SEEDS, &all.items, &all.count, error));
     shuffle(&all, c->options->seed);
     all.used = (size_t)ceil(c->value[PMAX] * (double)all.count);
     dem_status status = dem_classic_thin(c,

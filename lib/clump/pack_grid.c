@@ -160,10 +160,9 @@ static dem_status search(lattice *l, double fill, dem_error *error)
                 return DEM_OK;
             DEM_TRY(set_places(l, (size_t)cells, error));
             fewest = l->count < fewest ? l->count : fewest;
-            // coarse ones cannot win; --inscribed leaves out many
-            bool some = isinf(least) || (double)l->count > spheres / 4;
+            // --inscribed leaves out many
             bool few = l->count <= l->c->options->spheres || l->c->options->side == DEM_SIDE_INSCRIBED;
-            if (l->count && some && few)
+            if (l->count && few)
                 DEM_TRY(try_fills(l, fill, false, &least, error));
         }
         if ((double)fewest > (l->c->options->side == DEM_SIDE_INSCRIBED ? 8 : 2) * spheres)
