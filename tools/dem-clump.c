@@ -299,6 +299,11 @@ static int share_values(const cli_tool *tool, const cli_registry *known, dem_swe
     for (size_t s = 0; s < plan->series_count; s++) {
         dem_sweep_series *series = &plan->series[s];
         series->value_count = given_values(known, series->packer->name, series->values);
+        dem_pack_options packing = {.method = series->packer->name, .values = series->values,
+                                    .value_count = series->value_count};
+        dem_error error;
+        if (dem_pack_complete(&packing, &error) != DEM_OK)
+            return cli_wrong_usage(tool, "%s", error.text);
         for (size_t i = 0; i < series->value_count; i++)
             used[used_count++] = series->values[i].name;
     }
@@ -361,6 +366,10 @@ static int run_batch(const cli_tool *tool, const arguments *a, job_options *opti
 {
     bool several = inputs->count > 1;
     const char *table = NULL;
+    dem_error error;
+    dem_pack_options packing = options->make.pack;  // the job completes its own
+    if (dem_pack_complete(&packing, &error) != DEM_OK)
+        return cli_wrong_usage(tool, "%s", error.text);
     cli_texts files = {.items = calloc(a->outputs.count + 1, sizeof *files.items)};
     int status = files.items ? sort_outputs(tool, options, several, &files, &table)
                              : cli_error(tool, &(dem_error){.code = DEM_NO_MEMORY, .text = "out of memory"});

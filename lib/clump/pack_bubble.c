@@ -10,7 +10,7 @@
 #include "clump/pack_classic.h"
 
 enum { RATIO, DISTANCE };
-enum { FEWEST_BUBBLES = 12000, BUBBLES_PER_SPHERE = 40, MOST_BUBBLES = 60000 };
+enum { BUBBLES = 16000 };
 
 static const dem_parameter parameters[] = {
     [RATIO] = {"ratio", NAN, 0.001, 0.999, "-", "radius of the smallest sphere over that of the largest"},
@@ -60,11 +60,11 @@ static size_t choose(const void *user, double ratio, double distance_deg, size_t
 
 static dem_status place(dem_classic *c, dem_error *error)
 {
-    static const double ratios[] = {0.02, 0.03, 0.045, 0.065, 0.09, 0.12, 0.16, 0.2, 0.25, 0.32, 0.4, 0.5, 0.6, 0.7, 0.8, 0.9};
-    double wanted = fmax(FEWEST_BUBBLES, (double)BUBBLES_PER_SPHERE * (double)c->options->spheres);
+    static const double ratios[] = {0.02, 0.03, 0.04, 0.055, 0.07, 0.085, 0.1, 0.12, 0.14, 0.17, 0.2,
+                                    0.23, 0.27, 0.31, 0.36, 0.42, 0.5, 0.6, 0.7, 0.8, 0.9};
     dem_tangent *items;
     size_t count;
-    DEM_TRY(dem_classic_tangents(c, (size_t)fmin(wanted, MOST_BUBBLES), &items, &count, error));
+    DEM_TRY(dem_classic_tangents(c, BUBBLES, &items, &count, error));
     qsort(items, count, sizeof *items, larger_first);
     bubbles all = {items, count};
     dem_status status = dem_classic_thin(c,

@@ -9,11 +9,12 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "clump/farthest.h"
 #include "clump/pack_classic.h"
 
 enum { OVERLAP, MARGIN, VOXELS, RMIN };
-enum { CHUNK = 128, FEWEST_VOXELS = 60000, VOXELS_PER_SPHERE = 1000, MOST_VOXELS = 500000 };
-enum { MOST_MOVES = 40 };
+enum { CHUNK = 128, FEWEST_VOXELS = 60000, VOXELS_PER_SPHERE = 500, MOST_VOXELS = 300000 };
+enum { MOST_MOVES = 30, MOST_STEPS = 8 };  // of half a voxel and less, off a voxel
 
 static const double smallest_radius = 1e-4;  // [d_eq]
 
@@ -40,7 +41,7 @@ typedef struct field {
     double step;              // of the voxels
     double core;              // 1 - overlap
     double margin;            // [d_eq]
-    dem_ball *balls;
+    dem_ball *balls, *near;
     size_t ball_count;
 } field;
 
@@ -81,13 +82,11 @@ static dem_status set_depths(field *f, dem_error *error)
 
 static dem_status open_field(dem_classic *c, field *f, dem_error *error)
 {
-    double across = c->value[VOXELS], wanted = DEM_PI / 6 * across * across * across;
-    if (isnan(across)) {
-        wanted = fmin(fmax(FEWEST_VOXELS, (double)VOXELS_PER_SPHERE * (double)c->options->spheres), MOST_VOXELS);
+    double wanted = fmin(fmax(FEWEST_VOXELS, (double)VOXELS_PER_SPHERE * (double)c->options->spheres), MOST_VOXELS);
+    if (isnan(c->value[VOXELS]))
         c->value[VOXELS] = round(cbrt(6 * wanted / DEM_PI));
-    }
     dem_lattice lattice;
-    DEM_TRY(dem_lattice_build(c->grain, (size_t)wanted, &lattice, error));
+    DEM_TRY(dem_lattice_build(c->grain, (size_t)(DEM_PI / 6 * pow(c->value[VOXELS], 3)), &lattice, error));
     *f = (field){.c = c, .count = lattice.inside_count, .step = lattice.rows.step};
     f->chunk_count = (f->count + CHUNK - 1) / CHUNK;
     f->points = dem_alloc(f->count, sizeof *f->points);
@@ -95,7 +94,8 @@ static dem_status open_field(dem_classic *c, field *f, dem_error *error)
     f->distance = dem_alloc(f->count, sizeof *f->distance);
     f->chunks = dem_alloc(f->chunk_count, sizeof *f->chunks);
     f->balls = dem_alloc(c->options->spheres, sizeof *f->balls);
-    bool room = f->points && f->depth && f->distance && f->chunks && f->balls;
+    f->near = dem_alloc(c->options->spheres, sizeof *f->near);
+    bool room = f->near && f->points && f->depth && f->distance && f->chunks && f->balls;
     if (room)
         f->count = dem_lattice_sample(&lattice, f->count, f->points);
     f->chunk_count = (f->count + CHUNK - 1) / CHUNK;
@@ -110,6 +110,7 @@ static void close_field(field *f)
     free(f->distance);
     free(f->chunks);
     free(f->balls);
+    free(f->near);
 }
 
 static void lower_chunk(field *f, size_t k, const dem_ball *ball)
@@ -146,25 +147,50 @@ static size_t farthest_voxel(const field *f)
     return best;
 }
 
-static double room_at(const field *f, dem_vec3 p)
+// the balls that may matter within `reach` of a place
+static size_t find_near(const field *f, dem_vec3 p, double reach, dem_ball *near)
 {
-    double room = dem_classic_depth(f->c, p) + f->margin;
+    double room = INFINITY;
+    size_t count = 0;
     for (size_t i = 0; i < f->ball_count; i++)
         room = smaller(room, v3_distance(p, f->balls[i].centre) - f->core * f->balls[i].radius);
-    return room;
+    for (size_t i = 0; i < f->ball_count; i++)
+        if (v3_distance(p, f->balls[i].centre) - f->core * f->balls[i].radius <= room + 2 * reach)
+            near[count++] = f->balls[i];
+    return count;
 }
 
-// steps along the axes uphill, halved where none leads up
-static dem_ball climb(const field *f, dem_vec3 from)
+// distance to all that bounds the next ball where that is more than `enough`; the surface is `limit` away or nearer
+static double room_at(const field *f, size_t near_count, dem_vec3 p, double enough, double limit)
 {
-    dem_ball best = {from, room_at(f, from)};
-    double step = f->step / 2;
+    double room = INFINITY;
+    for (size_t i = 0; i < near_count; i++)
+        room = smaller(room, v3_distance(p, f->near[i].centre) - f->core * f->near[i].radius);
+    if (room <= enough)
+        return room;
+    dem_vec3 closest;
+    return smaller(room, f->margin - dem_mesh_level(&f->c->grain->tree, p, limit, &closest));
+}
+
+// steps along axes and diagonals uphill from a voxel, halved where none leads up
+static dem_ball climb(field *f, size_t voxel)
+{
+    dem_vec3 from = f->points[voxel];
+    enum { DIRECTIONS = 14 };
+    static const dem_vec3 directions[DIRECTIONS] = {{1, 0, 0}, {-1, 0, 0}, {0, 1, 0}, {0, -1, 0}, {0, 0, 1}, {0, 0, -1},
+                                                    {.6, .6, .6}, {.6, .6, -.6}, {.6, -.6, .6}, {-.6, .6, .6},
+                                                    {-.6, -.6, -.6}, {-.6, -.6, .6}, {-.6, .6, -.6}, {.6, -.6, -.6}};
+    double step = f->step / 2, reach = MOST_STEPS * step, depth = f->depth[voxel];
+    size_t near = find_near(f, from, reach, f->near);
+    dem_ball best = {from, room_at(f, near, from, -INFINITY, INFINITY)};
     for (int move = 0; move < MOST_MOVES && step > f->step / 64; move++) {
         dem_ball next = best;
-        for (int k = 0; k < 6; k++) {
-            dem_vec3 p = best.centre;
-            v3_set(&p, k / 2, v3_get(p, k / 2) + (k & 1 ? step : -step));
-            double room = room_at(f, p);
+        for (int k = 0; k < DIRECTIONS; k++) {
+            dem_vec3 p = v3_along(best.centre, step, directions[k]);
+            double moved = v3_distance(p, from);
+            if (moved > reach)
+                continue;
+            double room = room_at(f, near, p, next.radius, 1.001 * (depth + moved));
             if (room > next.radius)
                 next = (dem_ball){p, room};
         }
@@ -189,7 +215,7 @@ static dem_status fill(field *f, double overlap, double margin, double *least, d
     for (size_t k = 0; k < f->chunk_count; k++)
         lower_chunk(f, k, NULL);
     while (f->count && f->ball_count < c->options->spheres) {
-        dem_ball ball = climb(f, f->points[farthest_voxel(f)]);
+        dem_ball ball = climb(f, farthest_voxel(f));
         if (!(ball.radius >= smallest))
             break;
         f->balls[f->ball_count++] = ball;
@@ -206,7 +232,7 @@ static dem_status fill(field *f, double overlap, double margin, double *least, d
 // what is not given is found: the overlap with half the margin, then the margin with that overlap
 static dem_status search(field *f, dem_error *error)
 {
-    static const double overlaps[] = {0, 0.2, 0.4, 0.5, 0.6, 0.7, 0.8, 0.9, 1}, margins[] = {0, 0.25, 0.75, 1};
+    static const double overlaps[] = {0, 0.3, 0.5, 0.6, 0.7, 0.8, 0.9, 1}, margins[] = {0, 0.25, 0.75, 1};
     enum { OVERLAPS = sizeof overlaps / sizeof *overlaps, MARGINS = sizeof margins / sizeof *margins };
     dem_classic *c = f->c;
     double overlap = c->value[OVERLAP], margin = c->value[MARGIN], least = INFINITY;

@@ -11,7 +11,7 @@
 enum { AXIS };
 enum { PLACES = 800 };
 
-static const double least_gain = 1e-7;  // of the grain's volume, for one more ball to be worth its place
+static const double least_gain = 1e-5;  // of the grain's volume, for one more ball to be worth its place
 
 static const dem_parameter parameters[] = {
     [AXIS] = {"axis", NAN, 1, 3, "count", "principal axis: 1 that of least inertia, along a long grain, to 3"},

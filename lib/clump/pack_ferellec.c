@@ -10,12 +10,12 @@
 #include "clump/pack_classic.h"
 
 enum { DMIN, RMIN, RSTEP, PMAX };
-enum { FEWEST_SEEDS = 8000, SEEDS_PER_SPHERE = 40, MOST_SEEDS = 40000 };
+enum { SEEDS = 16000 };
 
 static const double smallest_step = 1e-6;  // no step at all is meant below
 
 static const dem_parameter parameters[] = {
-    [DMIN] = {"dmin", NAN, 0, 1, "d_eq", "a point of the surface nearer to a sphere starts no other one"},
+    [DMIN] = {"dmin", NAN, 0, 100, "d_eq", "a point of the surface nearer to a sphere starts no other one"},
     [RMIN] = {"rmin", NAN, 0, 0.5, "d_eq", "smallest radius"},
     [RSTEP] = {"rstep", 0, 0, 0.25, "d_eq", "step in which a sphere grows from rmin; 0 until it touches"},
     [PMAX] = {"pmax", 1, 0.001, 1, "-", "share of the surface points that may start a sphere"},
@@ -73,10 +73,10 @@ static void shuffle(seeds *all, uint64_t seed)
 
 static dem_status place(dem_classic *c, dem_error *error)
 {
-    static const double radii[] = {0, 0.01, 0.02, 0.03, 0.045, 0.06, 0.08, 0.1, 0.13, 0.16, 0.2, 0.25, 0.3, 0.35, 0.4};
-    double wanted = fmax(FEWEST_SEEDS, (double)SEEDS_PER_SPHERE * (double)c->options->spheres);
+    static const double radii[] = {0,    0.01, 0.015, 0.02, 0.025, 0.03, 0.035, 0.04, 0.05, 0.06, 0.07, 0.08,
+                                   0.09, 0.1,  0.115, 0.13, 0.145, 0.16, 0.18,  0.2,  0.23, 0.26, 0.3,  0.35, 0.4, 0.45, 0.48};
     seeds all = {.step = c->value[RSTEP]};
-    DEM_TRY(dem_classic_tangents(c, (size_t)fmin(wanted, MOST_SEEDS), &all.items, &all.count, error));
+    DEM_TRY(dem_classic_tangents(c, SEEDS, &all.items, &all.count, error));
     shuffle(&all, c->options->seed);
     all.used = (size_t)ceil(c->value[PMAX] * (double)all.count);
     dem_status status = dem_classic_thin(c,
@@ -86,7 +86,7 @@ static dem_status place(dem_classic *c, dem_error *error)
                                                          .spacing_parameter = DMIN,
                                                          .sizes = radii,
                                                          .size_count = sizeof radii / sizeof *radii,
-                                                         .fewest = 0.5,
+                                                         .fewest = fmin(box_diagonal(c->grain->box), 100),
                                                          .most = 0,
                                                          .limit = all.count},
                                          error);

@@ -10,6 +10,7 @@ enum { FEWEST_CELLS = 20000, CELLS_PER_SPHERE = 100, MOST_CELLS = 4000000 };
 enum { FILLS = 24, PARTS = 4 };
 
 static const double least_fill = 0.1, most_fill = 2;
+static const double largest_radius = 0.65;  // a ball of more than twice the grain's volume fits nothing [d_eq]
 
 static const dem_parameter parameters[] = {
     [SPACING] = {"spacing", NAN, 1e-3, 100, "d_eq", "of the lattice"},
@@ -112,6 +113,8 @@ static dem_status try_fills(lattice *l, double given_fill, bool any_count, doubl
         return dem_fail_memory(error);
     for (int k = 0; k < fills; k++) {
         double fill = fills == 1 ? given_fill : least_fill * pow(most_fill / least_fill, (double)k / (FILLS - 1));
+        if (fills > 1 && fill * l->spacing / 2 > largest_radius)
+            break;
         size_t count = set_balls(l, fill * l->spacing / 2);
         bool kept = false;
         if (count == 0 || (!any_count && count > c->options->spheres))
@@ -157,10 +160,9 @@ static dem_status search(lattice *l, double fill, dem_error *error)
                 return DEM_OK;
             DEM_TRY(set_places(l, (size_t)cells, error));
             fewest = l->count < fewest ? l->count : fewest;
-            // coarse ones cannot win; --inscribed leaves out many
-            bool some = isinf(least) || (double)l->count > spheres / 4;
+            // --inscribed leaves out many
             bool few = l->count <= l->c->options->spheres || l->c->options->side == DEM_SIDE_INSCRIBED;
-            if (l->count && some && few)
+            if (l->count && few)
                 DEM_TRY(try_fills(l, fill, false, &least, error));
         }
         if ((double)fewest > (l->c->options->side == DEM_SIDE_INSCRIBED ? 8 : 2) * spheres)

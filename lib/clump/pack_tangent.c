@@ -94,29 +94,39 @@ static bool choose_at(const dem_classic *c, choice *s, double size, double *spac
     return *count <= allowed;
 }
 
+static dem_status take(dem_classic *c, const choice *s, double size, double spacing, size_t count, double *least,
+                       dem_error *error)
+{
+    bool kept;
+    DEM_TRY(dem_classic_offer(c, s->balls, count, least, &kept, error));
+    if (kept) {
+        c->value[s->thinning->size_parameter] = size;
+        c->value[s->thinning->spacing_parameter] = spacing;
+    }
+    return DEM_OK;
+}
+
 static dem_status thin(dem_classic *c, choice *s, dem_error *error)
 {
     const dem_thinning *t = s->thinning;
-    double least = INFINITY;
-    size_t sizes = isnan(s->given_size) ? t->size_count : 1;
+    size_t sizes = isnan(s->given_size) ? t->size_count : 1, count;
+    double least = INFINITY, spacing, crowded_size = 0, crowded_spacing = 0;
     for (size_t k = 0; k < sizes; k++) {
-        double size = isnan(s->given_size) ? t->sizes[k] : s->given_size, spacing;
-        size_t count;
-        if (!choose_at(c, s, size, &spacing, &count)) {
-            if (k + 1 < sizes || c->balls)
-                continue;  // of larger ones there will be fewer
-            s->most = t->limit;
-            count = choose(s, size, spacing);
-        }
-        bool kept;
-        DEM_TRY(dem_classic_offer(c, s->balls, count, &least, &kept, error));
-        if (kept) {
-            c->value[t->size_parameter] = size;
-            c->value[t->spacing_parameter] = spacing;
+        double size = isnan(s->given_size) ? t->sizes[k] : s->given_size;
+        if (choose_at(c, s, size, &spacing, &count)) {
+            DEM_TRY(take(c, s, size, spacing, count, &least, error));
+        } else {
+            crowded_size = size;  // of larger ones there will be fewer
+            crowded_spacing = spacing;
         }
         DEM_TRY(dem_classic_go_on(c, 0.5 + 0.5 * (double)(k + 1) / (double)sizes, error));
     }
-    return DEM_OK;
+    if (c->balls)
+        return DEM_OK;
+    // always too many: the first of them, told to the caller where it is he who gave the spacing
+    s->most = isnan(s->given_spacing) ? c->options->spheres : t->limit;
+    count = choose(s, crowded_size, crowded_spacing);
+    return take(c, s, crowded_size, crowded_spacing, count, &least, error);
 }
 
 dem_status dem_classic_thin(dem_classic *c, const dem_thinning *thinning, dem_error *error)
