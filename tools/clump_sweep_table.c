@@ -10,6 +10,13 @@
 
 static const char *const moments_text[] = {"free", "volume", "exact"};
 
+enum { BREADTH = 8 };
+
+// of the measures
+static const char *const heads[] = {"gap",    "mean",   "Hausd.",  "protr.",  "normal",
+                                    "volume", "centre", "inertia", "overlap", "pieces"};
+_Static_assert(sizeof heads / sizeof *heads == DEM_MEASURES, "a head for every measure");
+
 static bool failed(const dem_sweep_cell *cell)
 {
     return cell->status != DEM_OK;
@@ -38,14 +45,14 @@ static void text_row(dem_buffer *out, const sweep_grain *g, size_t series, size_
     const dem_sweep_cell *c = dem_sweep_at(&g->sweep, series, count);
     if (!c->ran)
         return;
-    dem_buffer_print(out, "  %-18s %6zu", g->sweep.series[series].name, g->sweep.counts[count]);
+    dem_buffer_print(out, "  %-14s %6zu", g->sweep.series[series].name, g->sweep.counts[count]);
     if (failed(c)) {
         dem_buffer_print(out, "  failed: %s\n", c->message);
         return;
     }
     dem_buffer_print(out, " %7zu", c->pack.count);
     for (int i = 0; i < DEM_MEASURES; i++)
-        put_figure(out, 9, dem_measure_shown(&dem_measures[i], dem_measure_of(&dem_measures[i], &c->fidelity)));
+        put_figure(out, BREADTH, dem_measure_shown(&dem_measures[i], dem_measure_of(&dem_measures[i], &c->fidelity)));
     dem_buffer_print(out, "   ");
     put_figure(out, 8, c->seconds);
     dem_buffer_text(out, "\n");
@@ -57,23 +64,20 @@ void sweep_text(dem_buffer *out, const sweep_grain *g, const sweep_options *opti
     const char *unit = dem_length_unit(g->shape.equivalent_diameter, &factor);
     dem_buffer_print(out, "%s: %zu triangles, equivalent diameter ", g->base.name, g->base.report.triangles);
     dem_buffer_number(out, g->shape.equivalent_diameter * factor, 4);
-    dem_buffer_print(out, " %s\n\n  %-18s %6s %7s", unit, "method", "asked", "spheres");
-    for (int i = 0; i < DEM_MEASURES; i++) {
-        char head[32];
-        snprintf(head, sizeof head, "%.7s%s",
-                 strcmp(dem_measures[i].name, "protrusion") ? dem_measures[i].name : "protr", "");
-        put_aligned(out, 9, head);
-    }
-    dem_buffer_print(out, "   %8s\n  %-18s %6s %7s", "packing", "", "", "");
+    dem_buffer_print(out, " %s\n\n  %-14s %6s %7s", unit, "method", "asked", "spheres");
     for (int i = 0; i < DEM_MEASURES; i++)
-        put_aligned(out, 9, *dem_measures[i].unit ? dem_measures[i].unit : "-");
+        put_aligned(out, BREADTH, heads[i]);
+    dem_buffer_print(out, "   %8s\n  %-14s %6s %7s", "packing", "", "", "");
+    for (int i = 0; i < DEM_MEASURES; i++)
+        put_aligned(out, BREADTH, *dem_measures[i].unit ? dem_measures[i].unit : "-");
     dem_buffer_print(out, "   %8s\n", "s");
     for (size_t s = 0; s < g->sweep.series_count; s++)
         for (size_t k = 0; k < g->sweep.count_count; k++)
             text_row(out, g, s, k);
     dem_buffer_print(out,
-                     "\n  distances and offsets in %% of the equivalent diameter; volume, centre and inertia: of the "
-                     "union against the mesh\n  packing: processor time of a packing that runs alone, on %d %s\n",
+                     "\n  mean and Hausdorff distance of the surfaces, protrusion and centre offset in %% of the "
+                     "equivalent diameter;\n  volume, centre and inertia: errors of the union against the mesh\n  "
+                     "packing: processor time of a packing that runs alone, on %d %s\n",
                      options->threads, options->threads == 1 ? "thread" : "threads");
     for (size_t i = 0; i < options->job->outputs.count; i++)
         dem_buffer_print(out, "  wrote %s\n", options->job->outputs.items[i]);
