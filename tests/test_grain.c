@@ -97,7 +97,7 @@ static void every_parameter_of_a_kind_is_described(void **state)
         check(dem_grain_kind_find(kind->name) == kind);
         check(*kind->about && kind->param_count <= DEM_GRAIN_PARAMS);
         for (size_t i = 0; i < kind->param_count; i++) {
-            const dem_parameter *p = &kind->params[i];
+            const dem_grain_param *p = &kind->params[i];
             check(*p->name && *p->help && p->low < p->high);
             check(isnan(p->standard) || (p->standard >= p->low && p->standard <= p->high));
             check(strcmp(p->unit, "-") == 0 || strcmp(p->unit, "m") == 0 || strcmp(p->unit, "count") == 0);

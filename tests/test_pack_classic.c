@@ -70,7 +70,9 @@ static void the_first_sphere_in_a_sphere_is_that_sphere(void **state)
         check(p.count == 1 && p.moments == DEM_MOMENTS_FREE && p.reached);
         // tangent at a facet: off the middle by no more than facets are off the sphere; the transform's margin is a
         // voxel, of 49 across; the grid's radius is one of a ladder of 14 %
-        double tolerance = strcmp(classics[m], "euclidean") == 0 ? 2.0 / 49 : strcmp(classics[m], "grid") == 0 ? 0.1 : 9e-3;
+        double tolerance = strcmp(classics[m], "euclidean") == 0 ? 2.0 / 49
+                           : strcmp(classics[m], "grid") == 0    ? 0.1
+                                                                 : 9e-3;
         // smallest radii to try go up to 0.96 here, so the random point is one where the ball is at least that large
         bool random = strcmp(classics[m], "ferellec") == 0;
         check_vec(p.balls[0].centre, v3(5, -3, 2), random ? 0.05 : 1e-2);
@@ -227,7 +229,8 @@ static void euclidean_spheres_are_inscribed_up_to_a_voxel_and_overlap_as_allowed
             check(protrusion(&grain, &p) <= margin * d / voxels * 1.01 + 1e-9);
             for (size_t i = 0; i < p.count; i++)
                 for (size_t j = 0; j < i; j++) {
-                    double room = v3_distance(p.balls[i].centre, p.balls[j].centre) - (1 - overlaps[k]) * p.balls[j].radius;
+                    double room =
+                        v3_distance(p.balls[i].centre, p.balls[j].centre) - (1 - overlaps[k]) * p.balls[j].radius;
                     check(p.balls[i].radius <= room + 1e-9);
                 }
             dem_pack_free(&p);
@@ -279,7 +282,8 @@ static void thin_long_tiny_and_huge_grains_end_in_spheres_or_in_words(void **sta
 {
     (void)state;
     dem_mesh meshes[] = {shape_box(100, 1, 1), shape_box(100, 100, 1), shape_box(3e-6, 2e-6, 1e-6),
-                         shape_box(3000, 2000, 1000), shape_tetrahedron(v3(0, 0, 0), v3(1, 0, 0), v3(0, 1, 0), v3(0, 0, 1))};
+                         shape_box(3000, 2000, 1000),
+                         shape_tetrahedron(v3(0, 0, 0), v3(1, 0, 0), v3(0, 1, 0), v3(0, 0, 1))};
     for (size_t k = 0; k < sizeof meshes / sizeof *meshes; k++) {
         double d = diameter(&meshes[k]);
         for (size_t m = 0; m < CLASSICS; m++) {
@@ -325,14 +329,11 @@ static void parameters_out_of_range_and_of_other_methods_are_refused(void **stat
         const char *method, *name;
         double value;
         const char *says;
-    } wrong[] = {{"bubble", "distance", 181, "0 to 180 deg"},
-                 {"bubble", "ratio", 0, "0.001 to 0.999"},
-                 {"bubble", "dmin", 0.1, "has no parameter 'dmin'"},
-                 {"optimal", "ratio", 0.1, "has no parameter 'ratio'"},
-                 {"ferellec", "rmin", -1, "0 to 0.5 d_eq"},
-                 {"favier", "axis", 1.5, "whole numbers from 1 to 3"},
-                 {"euclidean", "overlap", INFINITY, "0 to 1"},
-                 {"grid", "spacing", 1e-3, "ask for at least"}};
+    } wrong[] = {
+        {"bubble", "distance", 181, "0 to 180 deg"},        {"bubble", "ratio", 0, "0.001 to 0.999"},
+        {"bubble", "dmin", 0.1, "has no parameter 'dmin'"}, {"optimal", "ratio", 0.1, "has no parameter 'ratio'"},
+        {"ferellec", "rmin", -1, "0 to 0.5 d_eq"},          {"favier", "axis", 1.5, "whole numbers from 1 to 3"},
+        {"euclidean", "overlap", INFINITY, "0 to 1"},       {"grid", "spacing", 1e-3, "ask for at least"}};
     for (size_t i = 0; i < sizeof wrong / sizeof *wrong; i++) {
         dem_pack_options options = dem_pack_defaults();
         dem_pack_value value = {wrong[i].name, wrong[i].value};

@@ -104,8 +104,7 @@ int cli_registry_check(const cli_tool *tool, const cli_registry *registry, const
     for (size_t k = 0; k < registry->count; k++) {
         const cli_entry *entry = &registry->entries[k];
         for (size_t i = 0; i < entry->parameter_count; i++)
-            if (!isnan(registry->values[k][i]) &&
-                !has_parameter(&registry->entries[chosen], entry->parameters[i].name))
+            if (!isnan(registry->values[k][i]) && !has_parameter(&registry->entries[chosen], entry->parameters[i].name))
                 return cli_wrong_usage(tool, "--%s belongs to %s %s, not to %s", entry->parameters[i].name,
                                        registry->what, entry->name, name);
     }

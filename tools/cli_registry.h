@@ -16,8 +16,8 @@ typedef struct cli_entry {
 
 /// Its option rows point into it: not to be copied or moved after cli_registry_options.
 typedef struct cli_registry {
-    const char *what;        ///< "kind"
-    const char *unset;       ///< who finds a parameter whose standard is NAN: "by the seed"
+    const char *what;   ///< "kind"
+    const char *unset;  ///< who finds a parameter whose standard is NAN: "by the seed"
     cli_entry entries[CLI_ENTRIES];
     size_t count;
     double values[CLI_ENTRIES][CLI_PARAMETERS];  ///< NAN: not given

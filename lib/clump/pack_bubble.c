@@ -2,9 +2,9 @@
 // inside in two places or more. The largest is taken, then again and again the largest that is left whose distance to
 // all taken before is large enough, until they fall below a part of the first one's radius.
 //
-// Distance is measured by the angle at which two spheres meet: 180 degrees less the angle between their radii at a point
-// of both surfaces. It is 0 where they touch from outside and 180 where one touches the other from inside, so with 180
-// all bubbles but the swallowed ones are taken.
+// Distance is measured by the angle at which two spheres meet: 180 degrees less the angle between their radii at a
+// point of both surfaces. It is 0 where they touch from outside and 180 where one touches the other from inside, so
+// with 180 all bubbles but the swallowed ones are taken.
 #include <stdlib.h>
 
 #include "clump/pack_classic.h"
@@ -61,7 +61,7 @@ static size_t choose(const void *user, double ratio, double distance_deg, size_t
 static dem_status place(dem_classic *c, dem_error *error)
 {
     static const double ratios[] = {0.02, 0.03, 0.04, 0.055, 0.07, 0.085, 0.1, 0.12, 0.14, 0.17, 0.2,
-                                    0.23, 0.27, 0.31, 0.36, 0.42, 0.5, 0.6, 0.7, 0.8, 0.9};
+                                    0.23, 0.27, 0.31, 0.36,  0.42, 0.5,   0.6, 0.7,  0.8,  0.9};
     dem_tangent *items;
     size_t count;
     DEM_TRY(dem_classic_tangents(c, BUBBLES, &items, &count, error));
@@ -84,9 +84,11 @@ static dem_status place(dem_classic *c, dem_error *error)
 
 const dem_packer dem_packer_bubble = {
     .name = "bubble",
-    .paper = "Taghavi 2011, Automatic clump generation based on mid-surface, 2nd FLAC/DEM Symposium; the bubble pack of PFC",
-    .about = "Balls of the medial axis, largest first, that do not overlap those before by more than an angle. Parameters "
-             "not given are those of least gap with at most -n spheres.",
+    .paper =
+        "Taghavi 2011, Automatic clump generation based on mid-surface, 2nd FLAC/DEM Symposium; the bubble pack of PFC",
+    .about =
+        "Balls of the medial axis, largest first, that do not overlap those before by more than an angle. Parameters "
+        "not given are those of least gap with at most -n spheres.",
     .parameters = parameters,
     .parameter_count = sizeof parameters / sizeof *parameters,
     .count_parameters = 2,

@@ -14,9 +14,9 @@ struct dem_classic {
     const dem_pack_grain *grain;
     const dem_pack_kernels *kernels;
     int threads;
-    dem_lattice lattice;              ///< to measure the fit on
-    double value[DEM_PACK_VALUES];    ///< the parameters; NAN: the method finds one and leaves it here
-    dem_ball *balls;                  ///< what was chosen, in the order of the choice
+    dem_lattice lattice;            ///< to measure the fit on
+    double value[DEM_PACK_VALUES];  ///< the parameters; NAN: the method finds one and leaves it here
+    dem_ball *balls;                ///< what was chosen, in the order of the choice
     size_t count;
 };
 
@@ -56,8 +56,8 @@ typedef struct dem_thinning {
     size_t size_parameter, spacing_parameter;  ///< places in c->value
     const double *sizes;                       ///< to try
     size_t size_count;
-    double fewest, most;                       ///< spacings of the fewest and of the most balls
-    size_t limit;                              ///< no choice has more balls
+    double fewest, most;  ///< spacings of the fewest and of the most balls
+    size_t limit;         ///< no choice has more balls
 } dem_thinning;
 
 /// The choice of least gap among those of at most options->spheres balls; all parameters given: what they come to.

@@ -1,7 +1,7 @@
 // Spheres by the Euclidean distance transform, as Angelidakis et al. (2021) describe it: of all voxels of the grain the
-// one farthest from everything that bounds it is the centre of the next sphere and that distance its radius. What bounds
-// it is the surface and the spheres before, each made smaller by the overlap allowed: with 0 the spheres touch, with 1
-// only the centre of one must not lie in another's.
+// one farthest from everything that bounds it is the centre of the next sphere and that distance its radius. What
+// bounds it is the surface and the spheres before, each made smaller by the overlap allowed: with 0 the spheres touch,
+// with 1 only the centre of one must not lie in another's.
 //
 // Distances are those to the triangles and the centre is moved off its voxel to where the distance is largest, so that
 // voxels only decide which places are looked at. The transform of an image instead counts to the next voxel outside,
@@ -38,9 +38,9 @@ typedef struct field {
     float *depth, *distance;  // [count] to the surface; to that and the spheres there are
     chunk *chunks;
     size_t count, chunk_count;
-    double step;              // of the voxels
-    double core;              // 1 - overlap
-    double margin;            // [d_eq]
+    double step;    // of the voxels
+    double core;    // 1 - overlap
+    double margin;  // [d_eq]
     dem_ball *balls, *near;
     size_t ball_count;
 } field;
@@ -118,8 +118,8 @@ static void lower_chunk(field *f, size_t k, const dem_ball *ball)
     float farthest = 0;
     for (size_t i = k * CHUNK; i < chunk_end(f, k); i++) {
         if (ball)
-            f->distance[i] = (float)smaller(f->distance[i],
-                                            v3_distance(f->points[i], ball->centre) - f->core * ball->radius);
+            f->distance[i] =
+                (float)smaller(f->distance[i], v3_distance(f->points[i], ball->centre) - f->core * ball->radius);
         farthest = f->distance[i] > farthest ? f->distance[i] : farthest;
     }
     f->chunks[k].farthest = farthest;
@@ -177,9 +177,9 @@ static dem_ball climb(field *f, size_t voxel)
 {
     dem_vec3 from = f->points[voxel];
     enum { DIRECTIONS = 14 };
-    static const dem_vec3 directions[DIRECTIONS] = {{1, 0, 0}, {-1, 0, 0}, {0, 1, 0}, {0, -1, 0}, {0, 0, 1}, {0, 0, -1},
-                                                    {.6, .6, .6}, {.6, .6, -.6}, {.6, -.6, .6}, {-.6, .6, .6},
-                                                    {-.6, -.6, -.6}, {-.6, -.6, .6}, {-.6, .6, -.6}, {.6, -.6, -.6}};
+    static const dem_vec3 directions[DIRECTIONS] = {
+        {1, 0, 0},     {-1, 0, 0},    {0, 1, 0},     {0, -1, 0},      {0, 0, 1},      {0, 0, -1},     {.6, .6, .6},
+        {.6, .6, -.6}, {.6, -.6, .6}, {-.6, .6, .6}, {-.6, -.6, -.6}, {-.6, -.6, .6}, {-.6, .6, -.6}, {.6, -.6, -.6}};
     double step = f->step / 2, reach = MOST_STEPS * step, depth = f->depth[voxel];
     size_t near = find_near(f, from, reach, f->near);
     dem_ball best = {from, room_at(f, near, from, -INFINITY, INFINITY)};

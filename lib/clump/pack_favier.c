@@ -163,13 +163,15 @@ static dem_status place(dem_classic *c, dem_error *error)
     if (c->count == 0)
         return dem_fail(error, DEM_FAILED,
                         "%s of the grain runs through its inside, so the method favier has no place for spheres; take "
-                        "another method", isnan(given) ? "no principal axis" : "not this principal axis");
+                        "another method",
+                        isnan(given) ? "no principal axis" : "not this principal axis");
     return DEM_OK;
 }
 
 const dem_packer dem_packer_favier = {
     .name = "favier",
-    .paper = "Favier, Abbaspour-Fard, Kremmer & Raji 1999, Eng. Computations 16, 467-480, doi:10.1108/02644409910271894",
+    .paper =
+        "Favier, Abbaspour-Fard, Kremmer & Raji 1999, Eng. Computations 16, 467-480, doi:10.1108/02644409910271894",
     .about = "Inscribed spheres centred on one principal axis, placed for the largest union; for bodies of revolution. "
              "The axis not given is that of least gap.",
     .parameters = parameters,

@@ -1,6 +1,6 @@
-// Ferellec & McDowell (2010): at a random point of the surface a sphere is grown along the inward normal, tangent to the
-// surface, until it meets the surface elsewhere. Points near the surface of a sphere that is there start none; spheres
-// that stay too small are dropped.
+// Ferellec & McDowell (2010): at a random point of the surface a sphere is grown along the inward normal, tangent to
+// the surface, until it meets the surface elsewhere. Points near the surface of a sphere that is there start none;
+// spheres that stay too small are dropped.
 //
 // The radius at which growing in steps ends is the largest one of the steps below that of the medial ball, so that is
 // what is computed.
@@ -73,8 +73,9 @@ static void shuffle(seeds *all, uint64_t seed)
 
 static dem_status place(dem_classic *c, dem_error *error)
 {
-    static const double radii[] = {0,    0.01, 0.015, 0.02, 0.025, 0.03, 0.035, 0.04, 0.05, 0.06, 0.07, 0.08,
-                                   0.09, 0.1,  0.115, 0.13, 0.145, 0.16, 0.18,  0.2,  0.23, 0.26, 0.3,  0.35, 0.4, 0.45, 0.48};
+    static const double radii[] = {0,    0.01, 0.015, 0.02, 0.025, 0.03,  0.035, 0.04,  0.05,
+                                   0.06, 0.07, 0.08,  0.09, 0.1,   0.115, 0.13,  0.145, 0.16,
+                                   0.18, 0.2,  0.23,  0.26, 0.3,   0.35,  0.4,   0.45,  0.48};
     seeds all = {.step = c->value[RSTEP]};
     DEM_TRY(dem_classic_tangents(c, SEEDS, &all.items, &all.count, error));
     shuffle(&all, c->options->seed);

@@ -22,9 +22,9 @@ typedef struct lattice {
     dem_vec3 axes[3], middle;  // of the smallest box
     double edges[3], spacing;
     long cells[3];
-    dem_ball *places;          // in the grain; the radius is the distance to the surface
+    dem_ball *places;  // in the grain; the radius is the distance to the surface
     dem_ball *balls;
-    size_t count, most;        // most places that are of use
+    size_t count, most;  // most places that are of use
 } lattice;
 
 static dem_status set_box(dem_classic *c, lattice *l, dem_error *error)
@@ -38,7 +38,8 @@ static dem_status set_box(dem_classic *c, lattice *l, dem_error *error)
     for (int k = 0; k < 3; k++) {
         double low = INFINITY, high = -INFINITY;
         for (size_t i = 0; i < 3 * grain->mesh->triangle_count; i++) {
-            double x = v3_dot(dem_pack_grain_enter(grain, grain->mesh->vertices[grain->mesh->triangles[i]]), l->axes[k]);
+            double x =
+                v3_dot(dem_pack_grain_enter(grain, grain->mesh->vertices[grain->mesh->triangles[i]]), l->axes[k]);
             low = fmin(low, x);
             high = fmax(high, x);
         }
@@ -138,8 +139,9 @@ static dem_status place_given(lattice *l, double spacing, double fill, dem_error
 {
     double cells = set_cells(l, spacing, 0), least = INFINITY;
     if (cells > MOST_CELLS)
-        return dem_fail(error, DEM_USAGE, "a spacing of %g d_eq makes %.0f cells around the grain; ask for at least %.2g",
-                        spacing, cells, spacing * cbrt(cells / MOST_CELLS));
+        return dem_fail(error, DEM_USAGE,
+                        "a spacing of %g d_eq makes %.0f cells around the grain; ask for at least %.2g", spacing, cells,
+                        spacing * cbrt(cells / MOST_CELLS));
     DEM_TRY(set_places(l, (size_t)cells, error));
     if (l->count > l->c->options->spheres)
         qsort(l->places, l->count, sizeof *l->places, deeper_first);
@@ -151,7 +153,7 @@ static dem_status search(lattice *l, double fill, dem_error *error)
 {
     double spheres = (double)l->c->options->spheres, least = INFINITY;
     double most_cells = fmin(FEWEST_CELLS + CELLS_PER_SPHERE * spheres, MOST_CELLS);
-    for (int part = PARTS; ; part++) {
+    for (int part = PARTS;; part++) {
         double spacing = l->edges[0] * PARTS / part;
         size_t fewest = SIZE_MAX;
         for (int more = 0; more < 2; more++) {
@@ -179,8 +181,10 @@ static dem_status place(dem_classic *c, dem_error *error)
     if (status == DEM_OK)
         status = isnan(spacing) ? search(&l, fill, error) : place_given(&l, spacing, fill, error);
     if (status == DEM_OK && c->count == 0)
-        status = dem_fail(error, DEM_FAILED, "no cubic lattice has between 1 and %zu points inside this grain; allow more "
-                          "spheres", c->options->spheres);
+        status = dem_fail(error, DEM_FAILED,
+                          "no cubic lattice has between 1 and %zu points inside this grain; allow more "
+                          "spheres",
+                          c->options->spheres);
     free(l.places);
     free(l.balls);
     return status;
@@ -188,7 +192,8 @@ static dem_status place(dem_classic *c, dem_error *error)
 
 const dem_packer dem_packer_grid = {
     .name = "grid",
-    .about = "Voxel spheres: equal spheres on a cubic lattice inside the grain (in use everywhere, no one's paper). Spacing and radius not given are those of least gap with "
+    .about = "Voxel spheres: equal spheres on a cubic lattice inside the grain (in use everywhere, no one's paper). "
+             "Spacing and radius not given are those of least gap with "
              "at most -n spheres.",
     .parameters = parameters,
     .parameter_count = sizeof parameters / sizeof *parameters,

@@ -76,7 +76,7 @@ static dem_status fill_values(const dem_grain_kind *kind, const double *given, d
 {
     DEM_ASSERT(kind->param_count <= DEM_GRAIN_PARAMS);
     for (size_t i = 0; i < kind->param_count; i++) {
-        const dem_parameter *p = &kind->params[i];
+        const dem_grain_param *p = &kind->params[i];
         values[i] = given && !isnan(given[i]) ? given[i] : p->standard;
         if (!isnan(values[i]))
             DEM_TRY(check_range(p->name, values[i], p->low, p->high, strcmp(p->unit, "count") == 0, error));

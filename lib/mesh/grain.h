@@ -9,6 +9,9 @@
 
 enum { DEM_GRAIN_PARAMS = 16 };
 
+/// Its standard NAN: drawn from the seed.
+typedef dem_parameter dem_grain_param;
+
 /// What a kind is given to work with.
 typedef struct dem_grain_request {
     const double *values;  ///< one per parameter of the kind, all in range
@@ -20,7 +23,7 @@ typedef struct dem_grain_request {
 /// there meets it once. Its size matters only where a parameter is a length.
 typedef struct dem_grain_kind {
     const char *name, *paper, *about;
-    const dem_parameter *params;
+    const dem_grain_param *params;
     size_t param_count;
     dem_status (*make)(const dem_ctx *ctx, const dem_grain_request *request, dem_mesh *mesh, dem_error *error);
 } dem_grain_kind;

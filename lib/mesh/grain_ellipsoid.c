@@ -2,7 +2,7 @@
 #include "mesh/grain.h"
 #include "mesh/icosphere.h"
 
-static const dem_parameter params[] = {
+static const dem_grain_param params[] = {
     {"longest", 2e-3, 1e-9, 1e9, "m", "axis along x, end to end"},
     {"intermediate", 1.6e-3, 1e-9, 1e9, "m", "axis along y"},
     {"shortest", 1.2e-3, 1e-9, 1e9, "m", "axis along z"},

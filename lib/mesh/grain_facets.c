@@ -9,7 +9,7 @@
 enum { FACES, SPREAD };
 enum { MAX_FACES = 100, MAX_CORNERS = 2 * MAX_FACES - 4, STREAM = 1 };
 
-static const dem_parameter params[] = {
+static const dem_grain_param params[] = {
     [FACES] = {"faces", 24, 8, MAX_FACES, "count", "planes cut; some may miss the grain"},
     [SPREAD] = {"spread", 0.3, 0, 0.6, "-", "of their distances: from 1 - spread to 1"},
 };

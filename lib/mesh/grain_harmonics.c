@@ -18,7 +18,7 @@ enum { STREAM = 2 };
 
 static const double THINNEST = 0.1;  // smallest radius of a usable grain, part of the mean
 
-static const dem_parameter params[] = {
+static const dem_grain_param params[] = {
     [D2] = {"d2", 0.1, 0, 0.4, "-", "D2: how far from a sphere the form is"},
     [D8] = {"d8", 0.01, 0, 0.1, "-", "D8: how angular; from D3 on, D_n = D8 (n/8)^-exponent"},
     [EXPONENT] = {"exponent", 1.5, 0, 6, "-", "of that power law, twice the Hurst exponent"},
