@@ -83,7 +83,7 @@ static void the_search_ends_the_same_for_any_number_of_threads(void **state)
 {
     (void)state;
     dem_mesh grain = shape_grain(8);
-    dem_pack_options options = gap_below(0.15);
+    dem_pack_options options = gap_below(0.25);
     dem_pack one, three;
     dem_error error;
     check_ok(dem_clump_pack(&(dem_ctx){.threads = 1}, &grain, &options, &one, &error), error);
@@ -104,14 +104,14 @@ static void all_targets_hold_together(void **state)
     dem_error error;
     dem_pack pack;
     dem_fidelity f;
-    check_ok(dem_target_read("hausdorff=14%", &targets[0], &error), error);
+    check_ok(dem_target_read("hausdorff=20%", &targets[0], &error), error);
     check_ok(dem_target_read("inertia=0.1", &targets[1], &error), error);
     check_ok(dem_target_read("pieces=1", &targets[2], &error), error);
     options.targets = targets;
     options.target_count = 3;
     check_ok(dem_clump_pack(&single, &grain, &options, &pack, &error), error);
     check_ok(dem_fidelity_measure(&single, &grain, pack.balls, pack.count, 0, &f, &error), error);
-    check(pack.reached && f.iou_gap <= 0.3 && f.distance_max <= 0.14 && f.inertia_error <= 1e-3 && f.pieces == 1);
+    check(pack.reached && f.iou_gap <= 0.3 && f.distance_max <= 0.2 && f.inertia_error <= 1e-3 && f.pieces == 1);
     check(dem_target_ratio(targets, 3, &f) <= 1);
     dem_pack_free(&pack);
     dem_mesh_free(&grain);
@@ -127,7 +127,7 @@ static void an_error_that_more_spheres_make_worse_is_searched_downwards(void **s
     dem_error error;
     options.targets = &target;
     options.target_count = 1;
-    options.max_spheres = 60;
+    options.max_spheres = 20;
     check_ok(dem_clump_pack(&single, &grain, &options, &pack, &error), error);
     check(pack.reached && pack.count == 1);
     dem_pack_free(&pack);
@@ -201,8 +201,8 @@ static bool watch_progress(void *user, const char *what, double fraction)
 static void packing_tells_its_progress_and_stops_where_it_is_asked_to(void **state)
 {
     (void)state;
-    static const double stops[] = {0, 0.2, 0.55, 0.7, 0.9, 2};
-    static const double gaps[] = {0, 0.15};
+    static const double stops[] = {0, 0.2, 0.9, 2};
+    static const double gaps[] = {0, 0.3};
     dem_mesh grain = shape_grain(8);
     for (size_t g = 0; g < 2; g++)
         for (size_t k = 0; k < sizeof stops / sizeof *stops; k++) {

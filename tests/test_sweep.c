@@ -147,7 +147,7 @@ static void measures_are_found_by_all_their_names_and_shown_in_their_unit(void *
     static const struct {
         const char *name;
         double value, shown;
-    } cases[] = {{"gap", 0.01, 1},         {"iou", 0.01, 1},       {"iou_gap", 0.01, 1},   {"volume", 0.02, 2},
+    } cases[] = {{"gap", 0.01, 1},           {"iou", 0.01, 1},       {"iou_gap", 0.01, 1},    {"volume", 0.02, 2},
                  {"distance_mean", 0.03, 3}, {"hausdorff", 0.04, 4}, {"protrusion", 0.05, 5}, {"center", 0.06, 6},
                  {"inertia_error", 0.07, 7}, {"normal", 8, 8},       {"overlap", 1.5, 1.5},   {"pieces", 2, 2}};
     for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {

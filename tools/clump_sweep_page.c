@@ -455,7 +455,7 @@ static void page_measures(dem_buffer *out)
         "the largest distance from a point of either surface to the other one.",
         "how far the union reaches outside the mesh.",
         ("mean angle between the normal of the union and that of the nearest place of the mesh: roughness the grain "
-        "does not have."),
+         "does not have."),
         "of the union of the spheres, exact.",
         "distance between the two centres of mass, exact.",
         "the largest relative error of the three principal moments, exact.",
