@@ -21,6 +21,7 @@ if(DEM_X86)
       target_link_libraries(${kernels} PRIVATE dem_flags OpenMP::OpenMP_C)
       # under sanitizers clang cannot make vector code of all loops it is asked to, and would stop at that
       target_compile_options(${kernels} PRIVATE $<$<C_COMPILER_ID:Clang>:-Wno-pass-failed>)
+      list(APPEND ${library}_objects $<TARGET_OBJECTS:${kernels}>)
       target_sources(${library} PRIVATE $<TARGET_OBJECTS:${kernels}>)
     endforeach()
   endforeach()

@@ -10,6 +10,7 @@
 #include "base/memory.h"
 #include "base/nearest.h"
 #include "base/units.h"
+#include "cli_table.h"
 
 enum { MESSAGE_BYTES = 2048, NAME_BYTES = 48 };
 
@@ -36,12 +37,8 @@ static bool add_text(cli_texts *texts, const char *item)
 
 static const char *option_name(const void *user, size_t index)
 {
-    static const char *const own[] = {"help", "version"};
-    const cli_tool *tool = user;
-    for (size_t i = 0; i < tool->option_count; i++)
-        if (tool->options[i].name && index-- == 0)
-            return tool->options[i].name;
-    return index < 2 ? own[index] : NULL;
+    const cli_option *option = cli_option_at(user, index);
+    return option ? option->name : NULL;
 }
 
 static bool fail(parser *p, const char *format, ...) DEM_PRINTF(2, 3);
@@ -63,33 +60,15 @@ static const char *shown(const cli_option *option, char text[static NAME_BYTES])
     return text;
 }
 
-static void range_text(const cli_option *option, const char *unit, char *text, size_t size)
-{
-    char low[64], high[64];
-    dem_format_double(low, sizeof low, option->low, 16);
-    dem_format_double(high, sizeof high, option->high, 16);
-    bool positive = option->low == CLI_POSITIVE;
-    if (option->low == 0 && option->high == 0)
-        *text = 0;
-    else if (isinf(option->high) && positive)
-        snprintf(text, size, " above 0%s", unit);
-    else if (isinf(option->high))
-        snprintf(text, size, " of at least %s%s", low, unit);
-    else if (positive)
-        snprintf(text, size, " above 0 and at most %s%s", high, unit);
-    else
-        snprintf(text, size, " from %s to %s%s", low, high, unit);
-}
-
 static bool in_range(const cli_option *option, double value)
 {
     return (option->low == 0 && option->high == 0) || (value >= option->low && value <= option->high);
 }
 
-static bool refuse_value(parser *p, const cli_option *option, const char *what, const char *unit, const char *text)
+static bool refuse_value(parser *p, const cli_option *option, const char *what, const char *text)
 {
     char name[NAME_BYTES], range[160];
-    range_text(option, unit, range, sizeof range);
+    cli_range_text(option, range, sizeof range);
     return fail(p, "%s must be a %s%s, not '%s'", shown(option, name), what, range, text);
 }
 
@@ -98,7 +77,7 @@ static bool take_whole(parser *p, const cli_option *option, const char *text)
     const char *end = text + strlen(text);
     long value;
     if (dem_parse_long(text, end, &value) != end || !in_range(option, (double)value))
-        return refuse_value(p, option, "whole number", "", text);
+        return refuse_value(p, option, "whole number", text);
     *(long *)option->value = value;
     return true;
 }
@@ -114,7 +93,7 @@ static bool take_number(parser *p, const cli_option *option, const char *text)
         rest += *rest == '%';
     }
     if (rest != end || !isfinite(value) || !in_range(option, value))
-        return refuse_value(p, option, percent ? "percentage" : "number", percent ? " %" : "", text);
+        return refuse_value(p, option, percent ? "percentage" : "number", text);
     *(double *)option->value = percent ? value / 100 : value;
     return true;
 }
@@ -123,17 +102,17 @@ static bool take_quantity(parser *p, const cli_option *option, const char *text)
 {
     static const struct {
         dem_dimension dimension;
-        const char *name, *unit;
-    } kinds[] = {[CLI_LENGTH] = {DEM_DIMENSION_LENGTH, "length", " m"},
-                 [CLI_DENSITY] = {DEM_DIMENSION_DENSITY, "density", " kg/m3"},
-                 [CLI_TIME] = {DEM_DIMENSION_TIME, "time", " s"}};
+        const char *name;
+    } kinds[] = {[CLI_LENGTH] = {DEM_DIMENSION_LENGTH, "length"},
+                 [CLI_DENSITY] = {DEM_DIMENSION_DENSITY, "density"},
+                 [CLI_TIME] = {DEM_DIMENSION_TIME, "time"}};
     char name[NAME_BYTES];
     dem_error error;
     double value;
     if (dem_quantity(text, kinds[option->kind].dimension, &value, &error) != DEM_OK)
         return fail(p, "%s: %s", shown(option, name), error.text);
     if (!isfinite(value) || !in_range(option, value))
-        return refuse_value(p, option, kinds[option->kind].name, kinds[option->kind].unit, text);
+        return refuse_value(p, option, kinds[option->kind].name, text);
     *(double *)option->value = value;
     return true;
 }
@@ -310,7 +289,12 @@ static cli_next answer(const cli_tool *tool, const char *argument, int *exit_sta
     dem_buffer text = {0};
     if (strcmp(argument, "--version") == 0)
         dem_buffer_print(&text, "%s %s\n", tool->name, dem_version());
-    else
+    else if (strncmp(argument, "--help=", 7) == 0) {
+        if (!cli_help_form(tool, argument + 7, &text)) {
+            *exit_status = cli_wrong_usage(tool, "--help= takes man, bash, zsh or fish, not '%s'", argument + 7);
+            return CLI_STOP;
+        }
+    } else
         cli_help(tool, &text);
     *exit_status = cli_print(tool, &text);
     return CLI_STOP;
@@ -327,7 +311,8 @@ cli_next cli_parse(const cli_tool *tool, int argc, char **argv, cli_texts *opera
             p.status = good ? 0 : DEM_FAILED;
         } else if (strcmp(argument, "--") == 0)
             options_over = true;
-        else if (strcmp(argument, "-h") == 0 || strcmp(argument, "--help") == 0 || strcmp(argument, "--version") == 0)
+        else if (strcmp(argument, "-h") == 0 || strcmp(argument, "--help") == 0 ||
+                 strncmp(argument, "--help=", 7) == 0 || strcmp(argument, "--version") == 0)
             return answer(tool, argument, exit_status);
         else
             good = argument[1] == '-' ? parse_long_option(&p, argument) : parse_letters(&p, argument);

@@ -75,7 +75,7 @@ typedef struct cli_common {
 typedef enum cli_next { CLI_GO, CLI_STOP } cli_next;
 
 /// Reads argv into the values of the table; operands ("-" and all behind "--" too) in order. Answers --help
-/// and --version. CLI_STOP: leave main with *exit_status; 2 and one line on stderr for wrong usage.
+/// (also as --help=man, bash, zsh, fish; see cli_table.h) and --version. CLI_STOP: leave main with *exit_status; 2 and one line on stderr for wrong usage.
 cli_next cli_parse(const cli_tool *tool, int argc, char **argv, cli_texts *operands, int *exit_status);
 
 /// Prints `tool: error: text; see tool --help` (a text that ends in '?' stands alone); returns 2.

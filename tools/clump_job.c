@@ -294,3 +294,10 @@ void job_results_release(job_results *results)
     free(results->items);
     *results = (job_results){0};
 }
+
+dem_status job_write(const dem_ctx *ctx, const job_options *options, job_result *result, const dem_mesh *mesh,
+                     dem_error *error)
+{
+    job j = {.caller = ctx, .options = options, .ctx = *ctx};
+    return write_outputs(&j, result, mesh, 0, 1, error);
+}

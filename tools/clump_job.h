@@ -55,4 +55,8 @@ dem_status job_read(const dem_ctx *ctx, const char *input, const char *name, con
                     dem_mesh *mesh, job_result *result);
 void job_result_release(job_result *result);
 
+/// Writes a clump that is there already as `options` ask for; `mesh` (may be NULL) is for the formats that show it.
+dem_status job_write(const dem_ctx *ctx, const job_options *options, job_result *result, const dem_mesh *mesh,
+                     dem_error *error);
+
 #endif

@@ -23,11 +23,15 @@ static const char *number(char text[32], double value)
     return dem_format_double(text, 32, value, fabs(value) >= 1e4 && fabs(value) < 1e7 ? 7 : 5);
 }
 
-static void compare_row(dem_buffer *out, const char *name, double mesh, double balls)
+void report_compare(dem_buffer *out, const char *name, double mesh, double balls)
 {
     char a[32], b[32];
     dem_buffer_print(out, "  %-18s %15s %18s", name, number(a, mesh), number(b, balls));
     double difference = 100 * (balls - mesh) / mesh;
+    if (isnan(difference)) {
+        dem_buffer_text(out, "\n");
+        return;
+    }
     dem_buffer_print(out, fabs(difference) < 1e-4 && difference != 0 ? "    %+.1e %%\n" : "    %+.4f %%\n", difference);
 }
 
@@ -62,11 +66,11 @@ static void text_mass(dem_buffer *out, const job_result *r, const dem_clump_def 
     dem_buffer_print(out, "  %-18s %15s %18s    difference\n", "", "mesh", "union of spheres");
     snprintf(name, sizeof name, "volume [%s^3]", unit);
     double cube = factor * factor * factor;
-    compare_row(out, name, r->solid.volume * cube, c->union_volume * cube);
-    compare_row(out, "mass   [kg]", r->solid.volume * c->density, c->union_volume * c->density);
+    report_compare(out, name, r->solid.volume * cube, c->union_volume * cube);
+    report_compare(out, "mass   [kg]", r->solid.volume * c->density, c->union_volume * c->density);
     for (int i = 0; i < 3; i++) {
         snprintf(name, sizeof name, "%s     [kg m^2]", axes[i]);
-        compare_row(out, name, r->solid.principal[i] * c->density, c->union_inertia[i]);
+        report_compare(out, name, r->solid.principal[i] * c->density, c->union_inertia[i]);
     }
     dem_buffer_print(out, "  the clump has the mass, centre and inertia of the %s; density ",
                      c->mass_from == DEM_MASS_FROM_UNION ? "union" : "mesh");

@@ -14,8 +14,9 @@ void report_json(dem_buffer *out, const job_results *results, const job_options 
 /// A header line and one row per grain; SI units stand in the header.
 void report_csv(dem_buffer *out, const job_results *results);
 
-/// Parts of these that other reports share: a text of a CSV file, quoted where needed; `"mesh": {...}`, what was found
-/// and done; `"warnings": [...]` and the like.
+/// Pieces of these: a row of a table that compares two solids (NAN: unknown), a cell of a CSV table, texts and an error
+/// in JSON.
+void report_compare(dem_buffer *out, const char *name, double mesh, double balls);
 void report_csv_text(dem_buffer *out, const char *text);
 void report_put_mesh(dem_json_writer *w, const dem_mesh_report *report);
 void report_put_texts(dem_json_writer *w, const char *key, char **texts, size_t count);

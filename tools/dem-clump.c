@@ -11,6 +11,7 @@
 #include "cli.h"
 #include "cli_registry.h"
 #include "clump/pack.h"
+#include "clump_convert.h"
 #include "clump_job.h"
 #include "clump_report.h"
 #include "clump_sweep.h"
@@ -43,6 +44,7 @@ static const char epilogue[] = "Examples:\n"
                                "  dem-clump grain.obj --sweep 10,20,50,100,200 --methods all -o report.html\n"
                                "  dem-clump grain.obj -o - --format xyzr       spheres on standard output\n"
                                "  dem-clump scans/*.stl -o clumps/             a batch; the table on standard output\n"
+                               "  dem-clump convert rock.mol -o rock.json      a clump of another program\n"
                                "Exit status: 0 done, 1 failed, 2 wrong usage, 3 bad input, 4 cannot write, 130 interrupted.";
 
 // the choices as the library counts them
@@ -420,8 +422,18 @@ static int run(const cli_tool *tool, arguments *a, const cli_texts *inputs, cons
     return status;
 }
 
+// what stands before the options and has options of its own
+typedef struct subcommand {
+    const char *name;
+    int (*run)(int argc, char **argv);
+} subcommand;
+static const subcommand subcommands[] = {{"convert", clump_convert}};
+
 int main(int argc, char **argv)
 {
+    for (size_t i = 0; argc > 1 && i < sizeof subcommands / sizeof *subcommands; i++)
+        if (strcmp(argv[1], subcommands[i].name) == 0)
+            return subcommands[i].run(argc - 1, argv + 1);
     arguments a = default_arguments();
     const cli_option options[] = {
         {.help = "Spheres"},

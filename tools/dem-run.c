@@ -30,6 +30,12 @@ static const char epilogue[] =
     "  dem-run sand.json --explain                      what does it pay for?\n"
     "  dem-run sand.json -D contacts.0.friction.coefficient=0.3 -o out-0.3\n"
     "  dem-run sand.json --resume out/checkpoint-5000.dem\n"
+    "Files:\n"
+    "  DIR/run.pvd, walls.pvd    frames for ParaView, with frames/ and shapes/\n"
+    "  DIR/series.csv            energies, contacts, forces on walls over time\n"
+    "  DIR/final.csv             the last state; may be the bodies of another scene\n"
+    "  DIR/run.json              the resolved scene, timings, the ledger of energies\n"
+    "  DIR/checkpoint-STEP.dem   for --resume\n"
     "Exit status: 0 done, 1 the run failed, 2 wrong usage, 3 bad input, 4 cannot write, 130 interrupted.";
 
 static int print_text(const cli_tool *tool, char *text)

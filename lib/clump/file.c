@@ -363,10 +363,23 @@ static dem_clump_def nothing(void)
     return def;
 }
 
+// spheres in plain text, a mesh: not even broken JSON
+static bool is_other_text(const char *text, size_t size)
+{
+    size_t i = 0;
+    while (i < size && strchr(" \t\r\n", text[i]))
+        i++;
+    return i < size && !strchr("{[\xef", text[i]);
+}
+
 dem_status dem_clump_decode(const char *text, size_t size, const char *file, dem_clump **clump, dem_error *error)
 {
     *clump = NULL;
     dem_json *root;
+    if (is_other_text(text, size))
+        return dem_fail_at(error, DEM_BAD_INPUT, file, 1,
+                           "is not a clump file; make one of it: dem-clump convert FILE -o NAME.json, or of a mesh "
+                           "dem-clump FILE -o NAME.json");
     DEM_TRY(dem_json_parse(text, size, file, &root, error));
     reader r = {file, error, "", root};
     dem_clump_def def = nothing();

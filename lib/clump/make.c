@@ -4,6 +4,7 @@
 
 #include "base/memory.h"
 #include "base/text.h"
+#include "clump/make.h"
 #include "clump/pack.h"
 #include "math/quat.h"
 #include "mesh/decimate.h"
@@ -32,8 +33,8 @@ static void to_clump_frame(dem_vec3 *point, dem_vec3 position, dem_quat orientat
     *point = quat_unrotate(orientation, v3_sub(*point, position));
 }
 
-static dem_status make_surface(const dem_mesh *mesh, size_t triangles, const dem_clump_def *def, dem_mesh *surface,
-                               dem_error *error)
+dem_status dem_make_surface(const dem_mesh *mesh, size_t triangles, const dem_clump_def *def, dem_mesh *surface,
+                            dem_error *error)
 {
     if (triangles == 0)
         return DEM_OK;
@@ -120,7 +121,7 @@ static dem_status make(const dem_ctx *ctx, const dem_mesh *mesh, const dem_make_
     set_mass(&def, &solid, &balls, options);
     DEM_TRY(dem_fidelity_measure(ctx, mesh, work->pack.balls, work->pack.count, 0, &def.fidelity, error));
     DEM_TRY(dem_shape_measure(ctx, mesh, &def.shape, error));
-    DEM_TRY(make_surface(mesh, options->surface_triangles, &def, &work->surface, error));
+    DEM_TRY(dem_make_surface(mesh, options->surface_triangles, &def, &work->surface, error));
 
     work->balls = dem_alloc(work->pack.count, sizeof *work->balls);
     if (!work->balls)

@@ -123,10 +123,9 @@ dem_status dem_field_flag(dem_scene_reader *r, const dem_scene_value *v, const d
 dem_status dem_field_text(dem_scene_reader *r, const dem_scene_value *v, const dem_field *field, void *into)
 {
     (void)field;
-    const char *text = dem_json_string(v->json);
+    const char *text = *(const char **)into = dem_json_string(v->json);
     if (!text)
         return dem_scene_refuse(r, v, "put it in quotes", "needs a text");
-    *(const char **)into = text;
     return DEM_OK;
 }
 

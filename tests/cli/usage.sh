@@ -6,7 +6,7 @@
 run 0 dem-grain --help
 prints '^Usage: dem-grain '
 prints '--quiet'
-[ "$(awk '{ if (length > n) n = length } END { print n }' out)" -le 100 ] || fail "help wider than 100 columns"
+[ "$(awk '{ if (length > n) n = length } END { print n }' out)" -le 80 ] || fail "help wider than 80 columns"
 cp out long
 run 0 dem-grain -h
 cmp -s out long || fail "-h is not --help"

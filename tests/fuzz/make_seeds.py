@@ -1,6 +1,6 @@
 #!/usr/bin/python3
 """Writes small valid files to start the fuzzers from: make_seeds.py FOLDER -> FOLDER/{stl,obj,ply,off,sniff,scene,csv,
-checkpoint}/"""
+checkpoint,clump_import}/"""
 import hashlib
 import os
 import struct
@@ -73,6 +73,24 @@ seeds['scene'] = [scene.encode(), (head % ('hertz', '') + tail).encode(), b'{"sc
                   b'\xfftime.end=5 ms\n' + scene.encode(), b'\xffbodies[0].scale=2\n{"schema": "dem-scene/1"}']
 seeds['csv'] = [b'shape,x,y,z\nrock,1,2,3\n', b'\xef\xbb\xbf# c\r\nshape,x,y,z,qw,qx,qy,qz,vx,vy,vz,wx,wy,wz,scale,id\r\n'
                 b'"a, ""b""",1.2345678901234567,-2e-3,3,1,2,3,4,5,6,7,8,9,10,0.5,"x"\r\n']
+balls = [(-0.0023, -0.0008, -0.0003, 0.01), (0.0068, 0.0007, -0.0004, 0.008), (-0.0081, 0.0065, 0.0008, 0.006)]
+rows = '\n'.join('%g %g %g %g' % b for b in balls) + '\n'
+head = '# g: 3 spheres of dem-clump 0.1.0\n# frame: %s\n# unit of x y z r: m\n# density [kg/m^3]: 2650\n# mass [kg]: 0.015\n' \
+    '# centre of mass [m]: 0 0 0\n# principal moments of inertia [kg m^2]: 6e-7 9e-7 1e-6\n' \
+    '# principal to mesh frame, position [m]: 1 2 3\n# principal to mesh frame, quaternion w x y z: 0.6 0 0.8 0\n'
+fix = 'fix p1 all particletemplate/multisphere 15485863 atom_type 1 density constant 2650 &\n nspheres 3 ntry 1000000 &\n' \
+    'spheres %s type 1 scale 2 mass 0.015 inertia_tensor 6e-7 0 1e-8 9e-7 0 1e-6 use_density\n'
+seeds['clump_import'] = [
+    b'\0{"schema": "dem-clump/1", "density": 1, "mass": 1, "inertia": [1, 1, 1], "spheres": [[0, 0, 0, 1]]}',
+    b'\1' + ('// g\nName\ng\nBegin centers_and_radii\n' + rows + 'End centers_and_radii\nParticle_center_and_diameter\n'
+             '0 0 0 0.03\nSize\n0.03\nVolume\n5.8e-6\nInertia per unit mass\n4e-5\n6e-5\n7e-5\n').encode(),
+    b'\2' + ('t\n\n3 atoms\n0.015 mass\n0 0 0 com\n6e-7 9e-7 1e-6 0 1e-8 0 inertia\n\nCoords\n\n' +
+             ''.join('%d %g %g %g\n' % (i + 1, *b[:3]) for i, b in enumerate(balls)) + '\nTypes\n\n1 1\n2 1\n3 1\n\nDiameters\n\n' +
+             ''.join('%d %g\n' % (i + 1, 2 * b[3]) for i, b in enumerate(balls)) + '\nMasses\n\n1 0.005\n2 0.005\n3 0.005\n').encode(),
+    b'\4' + rows.encode(), b'\4' + (head % 'mesh').encode() + rows.replace(' ', ',').encode(),
+    b'\4' + (head % 'principal').encode() + rows.replace('\n', '\r\n').encode(),
+    b'\5' + (fix % rows.replace('\n', ' &\n')).encode(), b'\5' + (fix % 'file a').encode(),
+    b'\5' + rows.replace('\n', ' 1\n').encode(), b'\3x,y,z,r\n' + rows.replace(' ', ',').encode()]
 for name, some in seeds.items():
     os.makedirs(os.path.join(sys.argv[1], name), exist_ok=True)
     for i, seed in enumerate(some):

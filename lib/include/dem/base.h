@@ -94,6 +94,18 @@ typedef struct dem_solid {
 
 DEM_API const char *dem_version(void);
 
+/// A structure of these headers as the library was compiled with it, or one field of it: for bindings of other
+/// languages, which cannot read the headers.
+typedef struct dem_abi_row {
+    const char *type;   ///< "dem_mesh"
+    const char *field;  ///< "vertices"; "": the whole structure
+    const char *kind;   ///< bool, i32, u32, i64, u64, f64, char, pointer or a structure; as many as fit in `size`
+    size_t offset;      ///< in the structure [B]
+    size_t size;        ///< [B]
+} dem_abi_row;
+/// All rows, a structure behind those it holds.
+DEM_API const dem_abi_row *dem_abi(size_t *count);
+
 #ifdef __cplusplus
 }
 #endif

@@ -3,6 +3,7 @@
 #define DEM_DEM_H
 #include "dem/base.h"
 #include "dem/clump.h"
+#include "dem/export.h"
 #include "dem/mesh.h"
 #include "dem/picture.h"
 #include "dem/scene.h"

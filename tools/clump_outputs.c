@@ -1,0 +1,101 @@
+#include "clump_outputs.h"
+
+#include <string.h>
+#include <sys/stat.h>
+
+#include "base/file.h"
+
+static bool is_folder(const char *path)
+{
+    struct stat about;
+    size_t length = strlen(path);
+    return (length && path[length - 1] == '/') || (stat(path, &about) == 0 && S_ISDIR(about.st_mode));
+}
+
+static const char *format_names(char text[256])
+{
+    *text = 0;
+    for (const dem_exporter *const *e = dem_exporters(); *e; e++)
+        snprintf(text + strlen(text), 256 - strlen(text), " %s", (*e)->name);
+    return text;
+}
+
+static int sort_one(const cli_tool *tool, job_options *o, bool several, const char *path, cli_texts *files,
+                    const char **table)
+{
+    char known[256];
+    const dem_exporter *exporter = dem_exporter_of_file(path);
+    if (!exporter && strcmp(path, "-") != 0 && is_folder(path))
+        o->folder = path;
+    else if (!exporter && dem_file_has_suffix(path, "csv"))
+        *table = path;
+    else if (several)
+        return cli_wrong_usage(tool, "several clumps cannot all go to '%s'; name a folder with -o DIR/", path);
+    else if (!exporter && files->count >= o->formats.count)
+        return cli_wrong_usage(tool, "the name '%s' does not tell the format; add --format, one of:%s", path,
+                               format_names(known));
+    else
+        files->items[files->count++] = path;
+    return 0;
+}
+
+int outputs_sort(const cli_tool *tool, job_options *o, bool several, cli_texts *files, const char **table)
+{
+    char known[256];
+    dem_error error;
+    for (size_t i = 0; i < o->formats.count; i++)
+        if (!dem_exporter_find(o->formats.items[i]))
+            return cli_wrong_usage(tool, "unknown format '%s'; use one of:%s", o->formats.items[i],
+                                   format_names(known));
+    for (size_t i = 0; i < o->outputs.count; i++) {
+        int status = sort_one(tool, o, several, o->outputs.items[i], files, table);
+        if (status)
+            return status;
+    }
+    if (o->folder && files->count)
+        return cli_wrong_usage(tool, "give -o either a folder or files, not both");
+    if (o->folder && dem_folder_create(o->folder, &error) != DEM_OK)
+        return cli_error(tool, &error);
+    o->outputs = *files;
+    return 0;
+}
+
+// the length of a file's name without its suffix
+static int stem(const char *name)
+{
+    const char *dot = strrchr(name, '.');
+    return (int)(dot && dot != name ? dot - name : (long)strlen(name));
+}
+
+static const char *name_of(const char *input)
+{
+    return strcmp(input, "-") ? dem_file_name(input) : "grain";
+}
+
+void outputs_name(const cli_texts *inputs, size_t at, char name[static 256])
+{
+    const char *own = name_of(inputs->items[at]);
+    int length = stem(own), same = 1;
+    for (size_t i = 0; i < at; i++) {
+        const char *other = name_of(inputs->items[i]);
+        same += stem(other) == length && strncmp(other, own, (size_t)length) == 0;
+    }
+    if (same > 1)
+        snprintf(name, 256, "%.*s_%d", length < 240 ? length : 240, own, same);
+    else
+        snprintf(name, 256, "%.*s", length, own);
+}
+
+int outputs_status(const job_results *results, bool several)
+{
+    int status = 0;
+    for (size_t i = 0; i < results->count; i++) {
+        int code = (int)results->items[i].status;
+        if (code == DEM_NO_MEMORY)
+            code = DEM_FAILED;
+        if (code == DEM_UNAVAILABLE || (code != 0 && several))
+            code = DEM_BAD_INPUT;
+        status = code ? code : status;
+    }
+    return cli_interrupted() ? DEM_INTERRUPTED : status;
+}
