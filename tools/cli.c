@@ -170,6 +170,7 @@ static bool take(parser *p, const cli_option *option, const char *text)
         *(bool *)option->value = true;
         return true;
     case CLI_TEXT:
+    case CLI_WORDS:
         *(const char **)option->value = text;
         return true;
     case CLI_TEXTS:
@@ -200,6 +201,26 @@ static const char *value_behind(parser *p, const cli_option *option)
         return p->arguments[++p->at];
     fail(p, "%s needs a value: --%s %s", shown(option, name), option->name, option->argument);
     return NULL;
+}
+
+static bool is_words(const char *text)
+{
+    return *text && strspn(text, "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_:,") == strlen(text);
+}
+
+// words that may be left out: a file's name is rarely one of them, as it has a suffix
+static const char *words_behind(parser *p)
+{
+    if (p->at + 1 < p->count && is_words(p->arguments[p->at + 1]))
+        return p->arguments[++p->at];
+    return "";
+}
+
+static const char *value_of(parser *p, const cli_option *option)
+{
+    if (option->kind == CLI_FLAG)
+        return "";
+    return option->kind == CLI_WORDS ? words_behind(p) : value_behind(p, option);
 }
 
 // every row of this name takes the value
@@ -241,7 +262,7 @@ static bool parse_long_option(parser *p, const char *argument)
     }
     if (option->kind == CLI_FLAG && equals)
         return fail(p, "--%s takes no value", option->name);
-    const char *text = equals ? equals + 1 : option->kind == CLI_FLAG ? "" : value_behind(p, option);
+    const char *text = equals ? equals + 1 : value_of(p, option);
     return text && take_by_name(p, option->name, text);
 }
 
@@ -257,7 +278,7 @@ static bool parse_letters(parser *p, const char *argument)
                 return false;
             continue;
         }
-        const char *text = at[1] ? at + 1 : value_behind(p, option);
+        const char *text = at[1] ? at + 1 : value_of(p, option);
         return text && take_by_name(p, option->name, text);
     }
     return true;

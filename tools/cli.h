@@ -21,6 +21,7 @@ typedef enum cli_kind {
     CLI_TIME,     ///< double [s], "0.5 s"
     CLI_CHOICE,   ///< int, index into the names of `argument`
     CLI_TEXTS,    ///< cli_texts, one item each time the option is given
+    CLI_WORDS,    ///< const char *, words of letters, digits, '_' and ':' with commas between; "" without them
 } cli_kind;
 
 /// One row of a tool's table: an option, or with name NULL a heading (`help`) over the rows that follow.

@@ -10,6 +10,7 @@
 #include "base/file.h"
 #include "base/hash.h"
 #include "base/memory.h"
+#include "clump/pack.h"
 #include "out/export.h"
 #include "out/picture.h"
 
@@ -136,7 +137,8 @@ static dem_status write_outputs(job *j, job_result *r, const dem_mesh *mesh, siz
                                 dem_error *error)
 {
     const job_options *o = j->options;
-    if (dem_progress(&j->ctx, "writing", 1))
+    // of a search that was stopped the best so far is written
+    if (!r->pack.interrupted && dem_progress(&j->ctx, "writing", 1))
         return dem_fail(error, DEM_INTERRUPTED, "interrupted; nothing was written");
     if (o->folder || o->outputs.count == 0) {
         size_t count = o->formats.count ? o->formats.count : 1;
@@ -170,14 +172,20 @@ static dem_status draw(job *j, job_result *r, dem_error *error)
                               error);
 }
 
-static dem_status finish_body(job *j, job_result *r, dem_mesh *mesh, size_t body, size_t bodies, dem_error *error)
+// to the size asked for
+static void rescale(const job_options *o, job_result *r, dem_mesh *mesh)
 {
-    const job_options *o = j->options;
     r->solid = dem_mesh_solid(mesh);
     if (o->size > 0) {
         dem_mesh_scale(mesh, o->size / cbrt(6 * r->solid.volume / 3.14159265358979323846));
         r->solid = dem_mesh_solid(mesh);
     }
+}
+
+static dem_status finish_body(job *j, job_result *r, dem_mesh *mesh, size_t body, size_t bodies, dem_error *error)
+{
+    const job_options *o = j->options;
+    rescale(o, r, mesh);
     dem_make_options make = o->make;
     make.name = r->name;
     make.source_mesh = strcmp(j->input, "-") ? dem_file_name(j->input) : "standard input";
@@ -188,6 +196,10 @@ static dem_status finish_body(job *j, job_result *r, dem_mesh *mesh, size_t body
     r->pack.balls = NULL;
     if (o->picture)
         DEM_TRY(draw(j, r, error));
+    if (o->moments_asked && make.pack.moments != DEM_MOMENTS_FREE && !dem_packer_find(make.pack.method)->keeps_moments)
+        dem_log(&j->ctx, DEM_LOG_WARNING,
+                "the method %s cannot give the spheres' union the grain's moments; the clump's own mass and inertia "
+                "are the mesh's all the same", make.pack.method);
     return write_outputs(j, r, mesh, body, bodies, error);
 }
 
@@ -235,11 +247,45 @@ static void run_bodies(job *j, dem_mesh *mesh, const char *name)
     free(bodies);
 }
 
-static void run(job *j, const char *name)
+static void open_job(job *j)
 {
     j->started = now();
     j->ctx = (dem_ctx){.log = job_log, .progress = job_progress, .user = j, .subject = j->caller->subject,
                        .threads = j->caller->threads};
+}
+
+// a file as it is called in messages
+static dem_ctx about_file(const dem_ctx *ctx, const char *input)
+{
+    dem_ctx about = *ctx;
+    about.subject = strcmp(input, "-") ? input : "standard input";
+    return about;
+}
+
+dem_status job_read(const dem_ctx *ctx, const char *input, const char *name, const job_options *options,
+                    dem_mesh *mesh, job_result *result)
+{
+    dem_ctx about = about_file(ctx, input);
+    job j = {.caller = &about, .input = input, .options = options};
+    open_job(&j);
+    *result = (job_result){.input = input};
+    snprintf(result->name, sizeof result->name, "%s", name);
+    result->status = read_and_repair(&j, mesh, &result->error);
+    if (result->status == DEM_OK)
+        rescale(options, result, mesh);
+    else if (!result->error.file[0])
+        snprintf(result->error.file, sizeof result->error.file, "%s", j.ctx.subject);
+    result->report = j.report;
+    result->seconds_read = j.seconds_read;
+    result->seconds_repair = j.seconds_repair;
+    result->warnings = j.warnings;
+    result->warning_count = j.warning_count;
+    return result->status;
+}
+
+static void run(job *j, const char *name)
+{
+    open_job(j);
     dem_mesh mesh = {0};
     dem_error error = {0};
     dem_status status = read_and_repair(j, &mesh, &error);
@@ -268,8 +314,7 @@ static void run(job *j, const char *name)
 void job_run(const dem_ctx *ctx, const char *input, const char *name, const job_options *options,
              job_results *results)
 {
-    dem_ctx about = *ctx;
-    about.subject = strcmp(input, "-") ? input : "standard input";
+    dem_ctx about = about_file(ctx, input);
     run(&(job){.caller = &about, .input = input, .options = options, .results = results}, name);
 }
 
@@ -352,19 +397,23 @@ void job_results_move(job_results *to, job_results *from)
     }
 }
 
+void job_result_release(job_result *r)
+{
+    dem_clump_destroy(r->clump);
+    dem_image_free(&r->picture);
+    for (size_t k = 0; k < r->warning_count; k++)
+        free(r->warnings[k]);
+    for (size_t k = 0; k < r->output_count; k++)
+        free(r->outputs[k]);
+    free(r->warnings);
+    free(r->outputs);
+    *r = (job_result){0};
+}
+
 void job_results_release(job_results *results)
 {
-    for (size_t i = 0; i < results->count; i++) {
-        job_result *r = &results->items[i];
-        dem_clump_destroy(r->clump);
-        dem_image_free(&r->picture);
-        for (size_t k = 0; k < r->warning_count; k++)
-            free(r->warnings[k]);
-        for (size_t k = 0; k < r->output_count; k++)
-            free(r->outputs[k]);
-        free(r->warnings);
-        free(r->outputs);
-    }
+    for (size_t i = 0; i < results->count; i++)
+        job_result_release(&results->items[i]);
     free(results->items);
     *results = (job_results){0};
 }

@@ -13,6 +13,7 @@
 typedef struct job_options {
     dem_make_options make;
     dem_repair_options repair;
+    bool moments_asked;            ///< explicitly
     bool split;
     double unit;                   ///< length of one unit of the file [m]
     const char *unit_name;
@@ -73,6 +74,12 @@ void job_results_slim(job_results *results);
 /// Moves what `from` holds behind what `to` holds.
 void job_results_move(job_results *to, job_results *from);
 void job_results_release(job_results *results);
+
+/// Reads, repairs and rescales one input, without making anything of it: `result` holds everything of the mesh. Release
+/// both; job_result_release.
+dem_status job_read(const dem_ctx *ctx, const char *input, const char *name, const job_options *options,
+                    dem_mesh *mesh, job_result *result);
+void job_result_release(job_result *result);
 
 /// Writes a clump that is there already as `options` ask for; `mesh` (may be NULL) is for the formats that show it.
 dem_status job_write(const dem_ctx *ctx, const job_options *options, job_result *result, const dem_mesh *mesh,

@@ -6,7 +6,7 @@
 #include "base/file.h"
 #include "base/memory.h"
 
-static bool is_folder(const char *path)
+bool outputs_is_folder(const char *path)
 {
     struct stat about;
     size_t length = strlen(path);
@@ -81,7 +81,7 @@ static int sort_one(const cli_tool *tool, job_options *o, bool several, const ch
 {
     const dem_exporter *exporter = dem_exporter_of_file(path);
     bool standard = strcmp(path, "-") == 0;
-    if (!standard && is_folder(path) && !(exporter && exporter->parts))
+    if (!standard && outputs_is_folder(path) && !(exporter && exporter->parts))
         o->folder = path;
     else if (!exporter && dem_file_has_suffix(path, "csv"))
         *table = path;

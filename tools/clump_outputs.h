@@ -13,6 +13,9 @@ int outputs_sort(const cli_tool *tool, job_options *o, bool several, cli_texts *
 /// folder. Before outputs_sort; 0 or the exit status.
 int outputs_exports(const cli_tool *tool, const char *list, job_options *o, cli_texts *formats);
 
+/// A folder that is there, or a name that ends in /.
+bool outputs_is_folder(const char *path);
+
 /// Base name of the outputs of an input: its own without folder and suffix, numbered where others before it have the
 /// same.
 void outputs_name(const cli_texts *inputs, size_t at, char name[static 256]);

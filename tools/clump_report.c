@@ -9,6 +9,7 @@
 #include "base/units.h"
 #include "clump/figures.h"
 #include "clump/file.h"
+#include "clump/measures.h"
 
 static const char *const moments_text[] = {"free", "volume", "exact"};
 
@@ -95,6 +96,19 @@ static void text_fidelity(dem_buffer *out, const dem_fidelity *f)
                      f->pieces == 1 ? "piece" : "pieces");
 }
 
+static void text_targets(dem_buffer *out, const job_options *options, const dem_fidelity *fidelity)
+{
+    const dem_pack_options *pack = &options->make.pack;
+    for (size_t i = 0; i < pack->target_count; i++) {
+        char is[32], asked[32];
+        const dem_measure *m = dem_measure_find(pack->targets[i].measure);
+        double value = dem_measure_of(m, fidelity), bound = pack->targets[i].bound;
+        dem_buffer_print(out, "  target    %s %s %s, asked for at most %s %s: %s\n", m->title,
+                         number(is, dem_measure_shown(m, value)), m->unit, number(asked, dem_measure_shown(m, bound)),
+                         m->unit, value <= bound ? "reached" : "NOT reached");
+    }
+}
+
 void report_text(dem_buffer *out, const job_result *r, const job_options *options)
 {
     if (!r->clump)
@@ -103,8 +117,10 @@ void report_text(dem_buffer *out, const job_result *r, const job_options *option
     dem_buffer_print(out, "%s: %zu spheres, IoU gap %.2f %%, moments met: %s  (%.2f s, packing %.2f s)\n\n", r->name,
                      c.ball_count, 100 * c.fidelity.iou_gap, moments_text[r->pack.moments], r->seconds_total,
                      r->pack.seconds);
-    if (options->make.pack.gap > 0 && !r->pack.reached)
+    if (options->make.pack.gap > 0 && c.fidelity.iou_gap > options->make.pack.gap)
         dem_buffer_print(out, "  the asked gap of %.3f %% was not reached\n", 100 * options->make.pack.gap);
+    if (options->make.pack.target_count)
+        text_targets(out, options, &c.fidelity);
     text_mesh(out, r);
     text_shape(out, &c.shape);
     text_mass(out, r, &c, &c.shape);
@@ -169,6 +185,16 @@ void report_put_texts(dem_json_writer *w, const char *key, char **texts, size_t 
     dem_json_close(w, ']');
 }
 
+void report_put_mesh(dem_json_writer *w, const dem_mesh_report *report)
+{
+    figure figures[MAX_FIGURES];
+    dem_json_open_object(w, "mesh");
+    put_figures(w, figures, report_figures(report, figures));
+    dem_json_put_bool(w, "inside_out", report->inside_out);
+    dem_json_put_bool(w, "wrapped", report->wrapped);
+    dem_json_close(w, '}');
+}
+
 void report_put_error(dem_json_writer *w, const dem_error *error)
 {
     dem_json_open_object(w, "error");
@@ -178,11 +204,30 @@ void report_put_error(dem_json_writer *w, const dem_error *error)
     dem_json_close(w, '}');
 }
 
-static void json_clump(dem_json_writer *w, const job_result *r)
+// what was asked for, and what is
+static void json_targets(dem_json_writer *w, const job_options *options, const dem_fidelity *fidelity)
+{
+    const dem_pack_options *pack = &options->make.pack;
+    dem_json_open_object(w, "targets");
+    for (size_t i = 0; i < pack->target_count; i++) {
+        const dem_measure *m = dem_measure_find(pack->targets[i].measure);
+        double value = dem_measure_of(m, fidelity);
+        dem_json_open_object(w, m->field);
+        dem_json_put_number(w, "at_most", pack->targets[i].bound);
+        dem_json_put_number(w, "is", value);
+        dem_json_put_bool(w, "reached", value <= pack->targets[i].bound);
+        dem_json_close(w, '}');
+    }
+    dem_json_close(w, '}');
+}
+
+static void json_clump(dem_json_writer *w, const job_result *r, const job_options *options)
 {
     dem_clump_def c = dem_clump_view(r->clump);
     dem_json_put_whole(w, "spheres", (int64_t)c.ball_count);
     dem_json_put_bool(w, "reached", r->pack.reached);
+    if (options->make.pack.target_count)
+        json_targets(w, options, &c.fidelity);
     dem_json_put_string(w, "moments", moments_text[r->pack.moments]);
     dem_json_put_number(w, "moment_residual", r->pack.moment_residual);
     if (r->pack.stand_in_triangles) {
@@ -203,9 +248,8 @@ static void json_clump(dem_json_writer *w, const job_result *r)
     dem_json_close(w, '}');
 }
 
-static void json_result(dem_json_writer *w, const job_result *r)
+static void json_result(dem_json_writer *w, const job_result *r, const job_options *options)
 {
-    figure figures[MAX_FIGURES];
     dem_json_open_object(w, NULL);
     dem_json_put_string(w, "input", r->input);
     if (!r->clump)
@@ -219,12 +263,8 @@ static void json_result(dem_json_writer *w, const job_result *r)
     if (r->status != DEM_OK)
         report_put_error(w, &r->error);
     if (r->clump)
-        json_clump(w, r);
-    dem_json_open_object(w, "mesh");
-    put_figures(w, figures, report_figures(&r->report, figures));
-    dem_json_put_bool(w, "inside_out", r->report.inside_out);
-    dem_json_put_bool(w, "wrapped", r->report.wrapped);
-    dem_json_close(w, '}');
+        json_clump(w, r, options);
+    report_put_mesh(w, &r->report);
     dem_json_open_object(w, "seconds");
     dem_json_put_number(w, "read", r->seconds_read);
     dem_json_put_number(w, "repair", r->seconds_repair);
@@ -236,18 +276,18 @@ static void json_result(dem_json_writer *w, const job_result *r)
     dem_json_close(w, '}');
 }
 
-void report_json(dem_buffer *out, const job_results *results, bool several)
+void report_json(dem_buffer *out, const job_results *results, const job_options *options, bool several)
 {
     dem_json_writer w = dem_json_begin(out);
     if (!several && results->count == 1) {
-        json_result(&w, &results->items[0]);
+        json_result(&w, &results->items[0], options);
         return;
     }
     size_t failed = 0;
     dem_json_open_object(&w, NULL);
     dem_json_open_array(&w, "grains", true);
     for (size_t i = 0; i < results->count; i++) {
-        json_result(&w, &results->items[i]);
+        json_result(&w, &results->items[i], options);
         failed += results->items[i].status != DEM_OK;
     }
     dem_json_close(&w, ']');

@@ -9,7 +9,7 @@
 void report_text(dem_buffer *out, const job_result *result, const job_options *options);
 
 /// One JSON object: of the grain alone, or {"grains": [...], "failed": n} for several.
-void report_json(dem_buffer *out, const job_results *results, bool several);
+void report_json(dem_buffer *out, const job_results *results, const job_options *options, bool several);
 
 /// A header line, and a row per grain; SI units stand in the header. `labels`: with what label volumes tell.
 void report_csv_header(dem_buffer *out, bool labels);
@@ -21,6 +21,7 @@ void report_csv_start(dem_buffer *out, const job_result *result, const char *sta
 /// in JSON.
 void report_compare(dem_buffer *out, const char *name, double mesh, double balls);
 void report_csv_text(dem_buffer *out, const char *text);
+void report_put_mesh(dem_json_writer *w, const dem_mesh_report *report);
 void report_put_texts(dem_json_writer *w, const char *key, char **texts, size_t count);
 void report_put_error(dem_json_writer *w, const dem_error *error);
 

@@ -8,6 +8,7 @@
 #include "base/memory.h"
 #include "base/units.h"
 #include "cli.h"
+#include "cli_registry.h"
 #include "clump/pack.h"
 #include "clump_batch.h"
 #include "clump_inputs.h"
@@ -16,6 +17,7 @@
 #include "clump_labels.h"
 #include "clump_outputs.h"
 #include "clump_report.h"
+#include "clump_sweep.h"
 #include "clump_verify.h"
 #include "out/export.h"
 
@@ -25,9 +27,12 @@ typedef struct arguments {
     long spheres, max_spheres;
     double gap, size, density, wrap_detail;
     int effort, moments, mass_from, frame, repair, keep;
-    bool inscribed, outer, split, methods;
-    const char *method, *unit, *exports;
-    cli_texts outputs, formats;
+    bool inscribed, outer, split;
+    const char *method, *methods, *unit, *exports, *sweep;
+    cli_texts outputs, formats, targets;
+    cli_registry known;  // the packing methods
+    dem_pack_value values[DEM_PACK_VALUES];
+    size_t value_count;
     // of many grains
     const char *list, *sheet, *raw, *spacing, *labels;
     bool recursive, resume, drop_border;
@@ -44,6 +49,8 @@ static const char epilogue[] = "Examples:\n"
                                "  dem-clump grain.stl                          50 spheres -> grain.json\n"
                                "  dem-clump grain.stl --unit mm -n 100 -o grain.json -o grain.png\n"
                                "  dem-clump grain.obj -e 3                     as many spheres as a 3 % gap needs\n"
+                               "  dem-clump grain.obj --target hausdorff=3% --target normal=10deg\n"
+                               "  dem-clump grain.obj --sweep 10,20,50,100,200 --methods all -o report.html\n"
                                "  dem-clump grain.obj -o - --format xyzr       spheres on standard output\n"
                                "  dem-clump scans/ -o clumps/ -o all.csv -o all.png      a folder; the table, a picture of all\n"
                                "  dem-clump scan.nrrd --unit mm -o clumps/     each label of a CT image\n"
@@ -61,31 +68,41 @@ static arguments default_arguments(void)
 {
     dem_make_options make = dem_make_defaults();
     return (arguments){.common = CLI_COMMON_DEFAULTS,
-                       .spheres = (long)make.pack.spheres,
                        .max_spheres = (long)make.pack.max_spheres,
                        .density = make.density,
                        .effort = make.pack.effort,
-                       .moments = make.pack.moments,
+                       .moments = -1,  // not given
                        .mass_from = make.mass_from,
                        .min_voxels = 500,
-                       .method = make.pack.method};
+                       .method = make.pack.method,
+                       .known = {.what = "method", .unset = "found for the number of spheres"}};
+}
+
+static void add_methods(cli_registry *methods)
+{
+    size_t count;
+    const dem_packer *const *packers = dem_packers(&count);
+    for (size_t i = 0; i < count && i < CLI_ENTRIES; i++)
+        methods->entries[methods->count++] = (cli_entry){packers[i]->name, packers[i]->about, packers[i]->paper,
+                                                         packers[i]->parameters, packers[i]->parameter_count};
 }
 
 // `--methods`: what the registry knows
-static int list_methods(const cli_tool *tool)
+static int list_methods(const cli_tool *tool, const arguments *a)
 {
     dem_buffer text = {0};
-    size_t count;
-    const dem_packer *const *packers = dem_packers(&count);
-    for (size_t i = 0; i < count; i++) {
-        dem_buffer_print(&text, "%s: %s\n  %s\n", packers[i]->name, packers[i]->about, packers[i]->paper);
-        for (size_t k = 0; k < packers[i]->parameter_count; k++) {
-            const dem_packer_parameter *p = &packers[i]->parameters[k];
-            dem_buffer_print(&text, "  %-12s [%s] default %g, %g to %g: %s\n", p->name, p->unit, p->value, p->low,
-                             p->high, p->help);
-        }
-    }
+    (a->common.json ? cli_registry_list_json : cli_registry_list)(&a->known, &text);
     return cli_print(tool, &text);
+}
+
+// the parameters given for the method; `values` has room for DEM_PACK_VALUES
+static size_t given_values(const cli_registry *methods, const char *method, dem_pack_value *values)
+{
+    size_t at = cli_registry_find(methods, method), count = 0;
+    for (size_t i = 0; i < methods->entries[at].parameter_count; i++)
+        if (!isnan(methods->values[at][i]))
+            values[count++] = (dem_pack_value){methods->entries[at].parameters[i].name, methods->values[at][i]};
+    return count;
 }
 
 static job_options job_options_from(const arguments *a)
@@ -96,13 +113,18 @@ static job_options job_options_from(const arguments *a)
     o.make.density = a->density;
     o.make.mass_from = (dem_mass_source)a->mass_from;
     o.make.pack.method = a->method;
-    o.make.pack.spheres = (size_t)a->spheres;
+    if (a->spheres)
+        o.make.pack.spheres = (size_t)a->spheres;
     o.make.pack.max_spheres = (size_t)a->max_spheres;
     o.make.pack.gap = a->gap;
     o.make.pack.effort = (dem_effort)a->effort;
-    o.make.pack.moments = (dem_moments_kept)a->moments;
+    if (a->moments >= 0)
+        o.make.pack.moments = (dem_moments_kept)a->moments;
     o.make.pack.side = a->inscribed ? DEM_SIDE_INSCRIBED : a->outer ? DEM_SIDE_OUTER : DEM_SIDE_BOTH;
     o.make.pack.seed = (uint64_t)a->common.seed;
+    o.make.pack.values = a->values;
+    o.make.pack.value_count = a->value_count;
+    o.moments_asked = a->moments >= 0;
     o.repair = (dem_repair_options){.repair = (dem_repair)a->repair, .keep = (dem_keep)a->keep,
                                     .wrap_detail = a->wrap_detail};
     if (a->split)
@@ -119,12 +141,122 @@ static int write_report(const cli_tool *tool, const arguments *a, const job_opti
     for (size_t i = 0; i < options->outputs.count; i++)
         to_stdout |= strcmp(options->outputs.items[i], "-") == 0;
     if (a->common.json)
-        report_json(&text, results, several || a->split);
+        report_json(&text, results, options, several || a->split);
     else if (!to_stdout && !a->common.quiet && !several && !a->split)
         for (size_t i = 0; i < results->count; i++)
             report_text(&text, &results->items[i], options);
     return text.size ? cli_print(tool, &text) : 0;
 }
+
+static int read_targets(const cli_tool *tool, const cli_texts *texts, dem_target **targets)
+{
+    dem_error error;
+    *targets = calloc(texts->count + 1, sizeof **targets);
+    for (size_t i = 0; *targets && i < texts->count; i++)
+        if (dem_target_read(texts->items[i], &(*targets)[i], &error) != DEM_OK)
+            return cli_wrong_usage(tool, "--target: %s", error.text);
+    return *targets ? 0 : cli_error(tool, &(dem_error){.code = DEM_NO_MEMORY, .text = "out of memory"});
+}
+
+// ---- --sweep
+
+// the command as it was given, without folders
+static void put_command(dem_buffer *out, int argc, char **argv)
+{
+    dem_buffer_text(out, "dem-clump");
+    for (int i = 1; i < argc; i++) {
+        const char *equals = argv[i][0] == '-' ? strchr(argv[i], '=') : NULL;
+        size_t head = equals ? (size_t)(equals + 1 - argv[i]) : 0;
+        const char *tail = argv[i] + head, *name = dem_file_name(tail);
+        tail = *name ? name : tail;
+        bool quoted = tail[strcspn(tail, " \t'\"\\$&|;<>()*?")] != 0;
+        dem_buffer_text(out, " ");
+        dem_buffer_bytes(out, argv[i], head);
+        dem_buffer_print(out, quoted ? "'%s'" : "%s", tail);
+    }
+}
+
+static int sort_sweep_outputs(const cli_tool *tool, job_options *job, bool several)
+{
+    for (size_t i = 0; i < job->outputs.count; i++) {
+        const char *path = job->outputs.items[i];
+        if (outputs_is_folder(path))
+            job->folder = path;
+        else if (several)
+            return cli_wrong_usage(tool, "several grains cannot all go to '%s'; name a folder with -o DIR/", path);
+        else if (!dem_file_has_suffix(path, "csv") && !dem_file_has_suffix(path, "svg") &&
+                 !dem_file_has_suffix(path, "html"))
+            return cli_wrong_usage(tool, "a sweep writes .csv, .svg and .html, not '%s'; -o DIR/ for all three", path);
+    }
+    if (job->folder && job->outputs.count > 1)
+        return cli_wrong_usage(tool, "give -o either a folder or files, not both");
+    dem_error error;
+    if (job->folder && dem_folder_create(job->folder, &error) != DEM_OK)
+        return cli_error(tool, &error);
+    if (job->folder)
+        job->outputs = (cli_texts){0};
+    return 0;
+}
+
+// every series has the parameters given for its method; one that no series has is a mistake
+static int share_values(const cli_tool *tool, const cli_registry *known, dem_sweep *plan)
+{
+    const char *used[DEM_SWEEP_SERIES * DEM_PACK_VALUES];
+    size_t used_count = 0;
+    for (size_t s = 0; s < plan->series_count; s++) {
+        dem_sweep_series *series = &plan->series[s];
+        series->value_count = given_values(known, series->packer->name, series->values);
+        dem_pack_options packing = {.method = series->packer->name, .values = series->values,
+                                    .value_count = series->value_count};
+        dem_error error;
+        if (dem_pack_complete(&packing, &error) != DEM_OK)
+            return cli_wrong_usage(tool, "%s", error.text);
+        for (size_t i = 0; i < series->value_count; i++)
+            used[used_count++] = series->values[i].name;
+    }
+    for (size_t k = 0; k < known->count; k++)
+        for (size_t i = 0; i < known->entries[k].parameter_count; i++) {
+            const char *name = known->entries[k].parameters[i].name;
+            bool given = !isnan(known->values[k][i]), found = false;
+            for (size_t u = 0; given && u < used_count; u++)
+                found |= strcmp(used[u], name) == 0;
+            if (given && !found)
+                return cli_wrong_usage(tool, "--%s belongs to method %s, which is not in this sweep", name,
+                                       known->entries[k].name);
+        }
+    return 0;
+}
+
+static int read_plan(const cli_tool *tool, const arguments *a, dem_sweep *plan)
+{
+    dem_error error;
+    const char *methods = a->methods && *a->methods ? a->methods : a->method;
+    if (a->spheres || a->gap > 0 || a->targets.count)
+        return cli_wrong_usage(tool, "--sweep names the numbers of spheres itself; leave out -n, -e and --target");
+    if (a->split || a->formats.count || a->exports || a->sheet || a->resume)
+        return cli_wrong_usage(tool, "--sweep goes with none of --split, --format, --exports, --sheet and --resume");
+    if (dem_sweep_read_counts(plan, a->sweep, &error) != DEM_OK)
+        return cli_wrong_usage(tool, "--sweep: %s", error.text);
+    if (dem_sweep_read_series(plan, methods, (dem_effort)a->effort, &error) != DEM_OK)
+        return cli_wrong_usage(tool, "--methods: %s", error.text);
+    return share_values(tool, &a->known, plan);
+}
+
+static int run_sweep(const cli_tool *tool, const arguments *a, job_options *job, const clump_inputs *inputs,
+                     const char *command)
+{
+    sweep_options options = {.job = job, .json = a->common.json, .quiet = a->common.quiet, .command = command,
+                             .threads = dem_threads(&(dem_ctx){.threads = (int)a->common.threads})};
+    int status = read_plan(tool, a, &options.plan);
+    for (size_t i = 0; status == 0 && i < inputs->count; i++)
+        if (inputs->items[i].labels)
+            return cli_wrong_usage(tool, "--sweep takes meshes, not volumes of labels as %s", inputs->items[i].path);
+    if (status == 0)
+        status = sort_sweep_outputs(tool, job, inputs->several);
+    return status ? status : sweep_run(tool, &a->common, inputs, &options);
+}
+
+// ---- one grain or a batch
 
 // "5 um" or "5um,5um,10um"
 static dem_status parse_spacing(const char *text, dem_vec3 *spacing, dem_error *error)
@@ -165,32 +297,30 @@ static int batch_options_from(const cli_tool *tool, const arguments *a, batch_op
     return 0;
 }
 
-static int run(const cli_tool *tool, arguments *a, const clump_inputs *inputs)
+static int run_batch(const cli_tool *tool, arguments *a, job_options *options, const clump_inputs *inputs)
 {
-    job_options options = job_options_from(a);
+    bool several = inputs->several;
     batch_options batch;
     dem_error error;
-    bool several = inputs->several;
-    if (a->unit && dem_unit(a->unit, DEM_DIMENSION_LENGTH, &options.unit, &error) != DEM_OK)
-        return cli_wrong_usage(tool, "--unit: %s", error.text);
-    if (a->inscribed && a->outer)
-        return cli_wrong_usage(tool, "--inscribed and --outer exclude each other");
+    dem_pack_options packing = options->make.pack;  // the job completes its own
+    if (dem_pack_complete(&packing, &error) != DEM_OK)
+        return cli_wrong_usage(tool, "%s", error.text);
     int status = batch_options_from(tool, a, &batch);
     if (status == 0 && a->exports)
-        status = outputs_exports(tool, a->exports, &options, &a->formats);
+        status = outputs_exports(tool, a->exports, options, &a->formats);
     if (status != 0)
         return status;
     cli_texts files = {.items = calloc(a->outputs.count + 1, sizeof *files.items)};
-    status = files.items ? outputs_sort(tool, &options, several, &files, &batch.table, &batch.sheet)
+    status = files.items ? outputs_sort(tool, options, several, &files, &batch.table, &batch.sheet)
                          : cli_error(tool, &(dem_error){.code = DEM_NO_MEMORY, .text = "out of memory"});
     if (status == 0) {
         job_results results = {0};
         if (!batch.table && (several || a->split) && !a->common.json && !a->common.quiet)
             batch.table = "-";
         batch.keep_results = a->common.json || !several;
-        options.picture = batch.sheet != NULL;
-        status = batch_run(tool, &a->common, inputs, &options, &batch, &results);
-        int printed = write_report(tool, a, &options, &results, several);
+        options->picture = batch.sheet != NULL;
+        status = batch_run(tool, &a->common, inputs, options, &batch, &results);
+        int printed = write_report(tool, a, options, &results, several);
         status = status ? status : printed;
         job_results_release(&results);
     }
@@ -198,14 +328,41 @@ static int run(const cli_tool *tool, arguments *a, const clump_inputs *inputs)
     return status;
 }
 
+static int run(const cli_tool *tool, arguments *a, const clump_inputs *inputs, const char *command)
+{
+    int status = a->sweep ? 0 : cli_registry_check(tool, &a->known, a->method, "methods");
+    if (status)
+        return status;
+    if (!a->sweep)
+        a->value_count = given_values(&a->known, a->method, a->values);
+    job_options options = job_options_from(a);
+    dem_error error;
+    if (a->unit && dem_unit(a->unit, DEM_DIMENSION_LENGTH, &options.unit, &error) != DEM_OK)
+        return cli_wrong_usage(tool, "--unit: %s", error.text);
+    if (a->inscribed && a->outer)
+        return cli_wrong_usage(tool, "--inscribed and --outer exclude each other");
+    if (!a->sweep && a->methods)
+        return cli_wrong_usage(tool, "--methods with a list goes with --sweep, as in --sweep 10,50,200 --methods %s",
+                               a->methods);
+    dem_target *targets = NULL;
+    status = read_targets(tool, &a->targets, &targets);
+    options.make.pack.targets = targets;
+    options.make.pack.target_count = a->targets.count;
+    if (status == 0)
+        status = a->sweep ? run_sweep(tool, a, &options, inputs, command) : run_batch(tool, a, &options, inputs);
+    free(targets);
+    return status;
+}
+
 // operands, folders and the list are made one
-static int run_operands(const cli_tool *tool, arguments *a, const cli_texts *operands)
+static int run_operands(const cli_tool *tool, arguments *a, const cli_texts *operands, const char *command)
 {
     clump_inputs inputs;
     dem_error error;
     const clump_input_options options = {.list = a->list, .recursive = a->recursive, .raw = a->raw != NULL};
-    int status = clump_inputs_collect(operands, &options, &inputs, &error) == DEM_OK ? run(tool, a, &inputs)
-                                                                                    : cli_error(tool, &error);
+    int status = clump_inputs_collect(operands, &options, &inputs, &error) == DEM_OK
+                     ? run(tool, a, &inputs, command)
+                     : cli_error(tool, &error);
     clump_inputs_release(&inputs);
     return status;
 }
@@ -227,7 +384,11 @@ int main(int argc, char **argv)
         {.help = "Spheres"},
         {"spheres", 'n', CLI_WHOLE, "N", "at most N spheres (default 50)", &a.spheres, 1, 100000},
         {"gap", 'e', CLI_PERCENT, "PCT", "instead: the fewest spheres whose IoU gap is at most PCT %", &a.gap, 1e-3, 99},
-        {"max-spheres", 0, CLI_WHOLE, "N", "bound of -e (default 2000)", &a.max_spheres, 1, 100000},
+        {"target", 0, CLI_TEXTS, "MEASURE=VALUE",
+         "instead: the fewest spheres for which all targets hold: gap=3%, distance=1%, hausdorff=5%, protrusion=2%, "
+         "volume=1%, centre=1%, inertia=0.5%, normal=8deg, overlap=1.8, pieces=1; repeatable",
+         &a.targets, 0, 0},
+        {"max-spheres", 0, CLI_WHOLE, "N", "bound of -e and --target (default 2000)", &a.max_spheres, 1, 100000},
         {"effort", 0, CLI_CHOICE, effort_names, "how hard to search (default: default)", &a.effort, 0, 0},
         {"moments", 0, CLI_CHOICE, moments_names,
          "what the union of the spheres shall have exactly of the grain (default exact: volume, centre, inertia)",
@@ -235,7 +396,11 @@ int main(int argc, char **argv)
         {"inscribed", 0, CLI_FLAG, NULL, "no sphere reaches outside the mesh", &a.inscribed, 0, 0},
         {"outer", 0, CLI_FLAG, NULL, "no part of the mesh is left uncovered", &a.outer, 0, 0},
         {"method", 0, CLI_TEXT, "NAME", "packing method (default optimal)", &a.method, 0, 0},
-        {"methods", 0, CLI_FLAG, NULL, "list the methods and leave", &a.methods, 0, 0},
+        {"methods", 0, CLI_WORDS, "[A,B]",
+         "list the methods and leave; with --sweep those to compare, as in optimal,optimal:fast or all", &a.methods, 0,
+         0},
+        {"sweep", 0, CLI_TEXT, "N,N", "pack each of these numbers of spheres: errors against spheres and seconds; -o "
+         "report.html, .csv, .svg, or DIR/", &a.sweep, 0, 0},
         {.help = "Mesh"},
         {"unit", 0, CLI_TEXT, "UNIT", "length unit of the file (default m)", &a.unit, 0, 0},
         {"size", 0, CLI_LENGTH, "D", "rescale to this equivalent-volume diameter, as in 2mm", &a.size, CLI_POSITIVE,
@@ -278,19 +443,27 @@ int main(int argc, char **argv)
          "frame of xyzr, vtp, stl (default principal; mesh: the file's own, in metres)", &a.frame, 0, 0},
         CLI_COMMON_OPTIONS(a.common),
     };
-    const cli_tool tool = {"dem-clump", "MESH|FOLDER|IMAGE... [options]", about, options, sizeof options / sizeof *options, epilogue};
+    static cli_option all[sizeof options / sizeof *options + CLI_REGISTRY_OPTIONS];
+    memcpy(all, options, sizeof options);
+    add_methods(&a.known);
+    size_t count = cli_registry_options(&a.known, all, sizeof options / sizeof *options);
+    const cli_tool tool = {"dem-clump", "MESH|FOLDER|IMAGE... [options]", about, all, count, epilogue};
     cli_texts inputs = {0};
     int status;
     if (cli_parse(&tool, argc, argv, &inputs, &status) == CLI_GO) {
-        if (a.methods)
-            status = list_methods(&tool);
+        dem_buffer command = {0};
+        put_command(&command, argc, argv);
+        if (a.methods && !*a.methods && !a.sweep)
+            status = list_methods(&tool, &a);
         else if (inputs.count == 0 && !a.list)
             status = cli_wrong_usage(&tool, "no mesh given");
         else
-            status = run_operands(&tool, &a, &inputs);
+            status = run_operands(&tool, &a, &inputs, command.failed ? "dem-clump" : command.data);
+        dem_buffer_release(&command);
     }
     cli_texts_release(&inputs);
     cli_texts_release(&a.outputs);
     cli_texts_release(&a.formats);
+    cli_texts_release(&a.targets);
     return status;
 }

@@ -4,131 +4,19 @@
 #include <unistd.h>
 
 #include "base/file.h"
-#include "base/nearest.h"
 #include "base/units.h"
 #include "grain_settings.h"
 #include "mesh/harmonics.h"
 
 enum { MOST_GRAINS = 100000 };
+_Static_assert((int)CLI_PARAMETERS >= (int)DEM_GRAIN_PARAMS, "room for the parameters of a kind");
 
-static const char *kind_name(const void *user, size_t index)
-{
-    (void)user;
-    const dem_grain_kind *kind = dem_grain_kind_at(index);
-    return kind ? kind->name : NULL;
-}
-
-static bool is_length(const dem_grain_param *p)
-{
-    return strcmp(p->unit, "m") == 0;
-}
-
-// "0 to 0.4, default 0.1"
-static void put_range(dem_buffer *out, const dem_grain_param *p)
-{
-    const char *unit = "";
-    double factor = 1;
-    if (is_length(p))
-        unit = dem_length_unit(p->standard, &factor);
-    else {
-        dem_buffer_number(out, p->low, 6);
-        dem_buffer_text(out, " to ");
-        dem_buffer_number(out, p->high, 6);
-        dem_buffer_text(out, ", ");
-    }
-    dem_buffer_text(out, "default ");
-    if (isnan(p->standard))
-        dem_buffer_text(out, "by the seed");
-    else
-        dem_buffer_number(out, p->standard * factor, 6);
-    dem_buffer_print(out, "%s%s", *unit ? " " : "", unit);
-}
-
-// the registry's parameters as rows of the option table, under a heading per kind
-static size_t add_kinds(settings *s, cli_option *options, size_t count)
+static void add_kinds(cli_registry *kinds)
 {
     const dem_grain_kind *kind;
-    for (size_t k = 0; k < MAX_KINDS && (kind = dem_grain_kind_at(k)); k++) {
-        snprintf(s->headings[k], sizeof s->headings[k], "Kind %s", kind->name);
-        options[count++] = (cli_option){.help = s->headings[k]};
-        for (size_t i = 0; i < kind->param_count; i++) {
-            const dem_grain_param *p = &kind->params[i];
-            dem_buffer range = {0};
-            put_range(&range, p);
-            snprintf(s->help[k][i], sizeof s->help[k][i], "%s (%s)", p->help, range.data ? range.data : "");
-            dem_buffer_release(&range);
-            s->values[k][i] = NAN;
-            options[count++] = (cli_option){.name = p->name,
-                                            .kind = is_length(p) ? CLI_LENGTH : CLI_NUMBER,
-                                            .argument = is_length(p) ? "D" : "X",
-                                            .help = s->help[k][i],
-                                            .value = &s->values[k][i]};
-        }
-    }
-    return count;
-}
-
-// names and parameters of all kinds, for people
-static void list_kinds(dem_buffer *out)
-{
-    const dem_grain_kind *kind;
-    for (size_t k = 0; (kind = dem_grain_kind_at(k)); k++) {
-        dem_buffer_print(out, "%s%s: %s\n", k ? "\n" : "", kind->name, kind->about);
-        if (*kind->paper)
-            dem_buffer_print(out, "    %s\n", kind->paper);
-        for (size_t i = 0; i < kind->param_count; i++) {
-            dem_buffer_print(out, "  --%-14s %s (", kind->params[i].name, kind->params[i].help);
-            put_range(out, &kind->params[i]);
-            dem_buffer_text(out, ")\n");
-        }
-    }
-}
-
-static void list_kinds_json(dem_buffer *out)
-{
-    const dem_grain_kind *kind;
-    dem_json_writer json = dem_json_begin(out);
-    dem_json_open_object(&json, NULL);
-    dem_json_open_array(&json, "kinds", true);
-    for (size_t k = 0; (kind = dem_grain_kind_at(k)); k++) {
-        dem_json_open_object(&json, NULL);
-        dem_json_put_string(&json, "name", kind->name);
-        dem_json_put_string(&json, "about", kind->about);
-        dem_json_put_string(&json, "paper", kind->paper);
-        dem_json_open_array(&json, "parameters", false);
-        for (size_t i = 0; i < kind->param_count; i++) {
-            const dem_grain_param *p = &kind->params[i];
-            dem_json_open_object(&json, NULL);
-            dem_json_put_string(&json, "name", p->name);
-            dem_json_put_number(&json, "default", p->standard);
-            dem_json_put_number(&json, "low", p->low);
-            dem_json_put_number(&json, "high", p->high);
-            dem_json_put_string(&json, "unit", p->unit);
-            dem_json_put_string(&json, "help", p->help);
-            dem_json_close(&json, '}');
-        }
-        dem_json_close(&json, ']');
-        dem_json_close(&json, '}');
-    }
-    dem_json_close(&json, ']');
-    dem_json_close(&json, '}');
-}
-
-// a parameter given that the chosen kind does not have
-static const char *stray_parameter(const settings *s, const dem_grain_kind *chosen, const char **owner)
-{
-    const dem_grain_kind *kind;
-    for (size_t k = 0; (kind = dem_grain_kind_at(k)); k++)
-        for (size_t i = 0; i < kind->param_count; i++) {
-            bool known = isnan(s->values[k][i]);
-            for (size_t j = 0; j < chosen->param_count; j++)
-                known = known || strcmp(chosen->params[j].name, kind->params[i].name) == 0;
-            if (!known) {
-                *owner = kind->name;
-                return kind->params[i].name;
-            }
-        }
-    return NULL;
+    while (kinds->count < CLI_ENTRIES && (kind = dem_grain_kind_at(kinds->count)))
+        kinds->entries[kinds->count++] =
+            (cli_entry){kind->name, kind->about, kind->paper, kind->params, kind->param_count};
 }
 
 // "40mm,20mm,10mm", or one length for a cube
@@ -237,23 +125,15 @@ static int run(const cli_tool *tool, settings *s, const cli_texts *operands)
         return cli_wrong_usage(tool, "unexpected '%s'; name the file to write with -o", operands->items[0]);
     if (s->list) {
         dem_buffer text = {0};
-        (s->common.json ? list_kinds_json : list_kinds)(&text);
+        (s->common.json ? cli_registry_list_json : cli_registry_list)(&s->kinds, &text);
         return cli_print(tool, &text);
     }
-    size_t index = 0;
-    const dem_grain_kind *kind, *found = dem_grain_kind_find(s->kind);
-    if (!found) {
-        const char *near = dem_nearest(s->kind, kind_name, NULL);
-        return near ? cli_wrong_usage(tool, "unknown kind '%s'; did you mean %s?", s->kind, near)
-                    : cli_wrong_usage(tool, "unknown kind '%s'; --list shows all", s->kind);
-    }
-    while ((kind = dem_grain_kind_at(index)) != found)
-        index++;
-    const char *owner, *stray = stray_parameter(s, kind, &owner);
-    if (stray)
-        return cli_wrong_usage(tool, "--%s belongs to kind %s, not to %s", stray, owner, kind->name);
-    s->own_values = s->values[index];
-    int status = check_together(tool, s, kind);
+    int status = cli_registry_check(tool, &s->kinds, s->kind, "list");
+    if (status != DEM_OK)
+        return status;
+    const dem_grain_kind *kind = dem_grain_kind_find(s->kind);
+    s->own_values = s->kinds.values[cli_registry_find(&s->kinds, s->kind)];
+    status = check_together(tool, s, kind);
     if (status == DEM_OK && s->block)
         status = read_block(tool, s);
     dem_error error;
@@ -279,8 +159,10 @@ int main(int argc, char **argv)
                          .unit = "m",
                          .triangles = 3000,
                          .kept = 2,
-                         .block_edges = {0.01, 0.01, 0.01}};
+                         .block_edges = {0.01, 0.01, 0.01},
+                         .kinds = {.what = "kind", .unset = "by the seed"}};
     s.grain = dem_grain_defaults();
+    add_kinds(&s.kinds);
     const cli_option own[] = {
         {"kind", 'k', CLI_TEXT, "NAME", "what to make (default harmonics)", &s.kind, 0, 0},
         {"list", 0, CLI_FLAG, NULL, "list the kinds with their parameters", &s.list, 0, 0},
@@ -329,7 +211,7 @@ int main(int argc, char **argv)
     const cli_option common[] = {CLI_COMMON_OPTIONS(s.common)};
     cli_option options[MAX_OPTIONS];
     memcpy(options, own, sizeof own);
-    size_t count = add_kinds(&s, options, sizeof own / sizeof *own);
+    size_t count = cli_registry_options(&s.kinds, options, sizeof own / sizeof *own);
     memcpy(options + count, common, sizeof common);
     count += sizeof common / sizeof *common;
     const cli_tool tool = {

@@ -2,11 +2,11 @@
 #ifndef DEM_TOOLS_GRAIN_SETTINGS_H
 #define DEM_TOOLS_GRAIN_SETTINGS_H
 
-#include "cli.h"
+#include "cli_registry.h"
 #include "mesh/grain.h"
 #include "mesh/write.h"
 
-enum { MAX_KINDS = 16, MAX_OPTIONS = 48 + MAX_KINDS * (DEM_GRAIN_PARAMS + 1) };
+enum { MAX_OPTIONS = 48 + CLI_REGISTRY_OPTIONS };
 
 typedef struct settings {
     cli_common common;
@@ -16,8 +16,7 @@ typedef struct settings {
     int format;  // of the files in a folder
     int repair;  // of the scan, a dem_repair
     dem_grain_options grain;
-    double values[MAX_KINDS][DEM_GRAIN_PARAMS];  // NAN: not given
-    char help[MAX_KINDS][DEM_GRAIN_PARAMS][160], headings[MAX_KINDS][160];
+    cli_registry kinds;
     // resolved
     const double *own_values;  // those of the chosen kind
     bool folder;               // the output is one

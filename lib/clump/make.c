@@ -5,6 +5,7 @@
 #include "base/memory.h"
 #include "base/text.h"
 #include "clump/make.h"
+#include "clump/pack.h"
 #include "math/quat.h"
 #include "mesh/decimate.h"
 
@@ -47,20 +48,39 @@ dem_status dem_make_surface(const dem_mesh *mesh, size_t triangles, const dem_cl
     return DEM_OK;
 }
 
+static void write_targets(dem_buffer *out, const dem_pack_options *asked)
+{
+    for (size_t i = 0; i < asked->target_count; i++) {
+        dem_buffer_print(out, "%s\"%s\":", i ? "," : ",\"targets\":{", asked->targets[i].measure);
+        dem_buffer_number(out, asked->targets[i].bound, 17);
+    }
+    if (asked->target_count > 0)
+        dem_buffer_text(out, "}");
+}
+
 static void write_parameters(dem_buffer *out, const dem_pack_options *asked, const dem_pack *pack)
 {
     static const char *const efforts[] = {"fast", "default", "best"};
     static const char *const moments[] = {"free", "volume", "exact"};
     static const char *const sides[] = {"both", "inscribed", "outer"};
-    if (asked->gap > 0) {
-        dem_buffer_text(out, "{\"gap\":");
-        dem_buffer_number(out, asked->gap, 17);
-        dem_buffer_print(out, ",\"max_spheres\":%zu", asked->max_spheres);
+    if (asked->gap > 0 || asked->target_count > 0) {
+        dem_buffer_print(out, "{\"max_spheres\":%zu", asked->max_spheres);
+        if (asked->gap > 0) {
+            dem_buffer_text(out, ",\"gap\":");
+            dem_buffer_number(out, asked->gap, 17);
+        }
+        write_targets(out, asked);
     } else {
         dem_buffer_print(out, "{\"spheres\":%zu", asked->spheres);
     }
-    dem_buffer_print(out, ",\"effort\":\"%s\",\"moments\":\"%s\",\"moments_met\":\"%s\",\"side\":\"%s\"}",
+    dem_buffer_print(out, ",\"effort\":\"%s\",\"moments\":\"%s\",\"moments_met\":\"%s\",\"side\":\"%s\"",
                      efforts[asked->effort], moments[asked->moments], moments[pack->moments], sides[asked->side]);
+    for (size_t i = 0; i < pack->used_count; i++)
+        if (isfinite(pack->used[i].value)) {
+            dem_buffer_print(out, ",\"%s\":", pack->used[i].name);
+            dem_buffer_shortest(out, pack->used[i].value);
+        }
+    dem_buffer_text(out, "}");
 }
 
 // mass, centre, frame and inertia from the solid that was asked for; the union's own beside them
@@ -85,15 +105,17 @@ static void set_mass(dem_clump_def *def, const dem_solid *mesh, const dem_union 
 static dem_status make(const dem_ctx *ctx, const dem_mesh *mesh, const dem_make_options *options, make_work *work,
                        dem_clump **clump, dem_error *error)
 {
+    dem_pack_options packing = options->pack;
+    DEM_TRY(dem_pack_complete(&packing, error));
     dem_clump_def def = {.name = options->name,
                          .source_mesh = options->source_mesh,
                          .source_sha256 = options->source_sha256,
                          .source_unit = options->source_unit,
-                         .method = options->pack.method,
-                         .seed = options->pack.seed,
+                         .method = packing.method,
+                         .seed = packing.seed,
                          .version = DEM_VERSION};
     dem_union balls;
-    DEM_TRY(dem_clump_pack(ctx, mesh, &options->pack, &work->pack, error));
+    DEM_TRY(dem_clump_pack(ctx, mesh, &packing, &work->pack, error));
     DEM_TRY(dem_balls_union(work->pack.balls, work->pack.count, &balls, error));
     dem_solid solid = dem_mesh_solid(mesh);
     set_mass(&def, &solid, &balls, options);
@@ -108,7 +130,7 @@ static dem_status make(const dem_ctx *ctx, const dem_mesh *mesh, const dem_make_
         work->balls[i] = work->pack.balls[i];
         to_clump_frame(&work->balls[i].centre, def.position, def.orientation);
     }
-    write_parameters(&work->parameters, &options->pack, &work->pack);
+    write_parameters(&work->parameters, &packing, &work->pack);
     if (work->parameters.failed)
         return dem_fail_memory(error);
     def.balls = work->balls;

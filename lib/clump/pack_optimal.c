@@ -5,7 +5,6 @@
 #include "base/status.h"
 #include "clump/pack.h"
 #include "clump/pack_side.h"
-#include "clump/pack_target.h"
 
 static const double poor_gap = 0.4;    // a fit not worth the name
 
@@ -83,8 +82,7 @@ static dem_status run_optimal(const dem_ctx *ctx, const dem_mesh *mesh, const de
     if (options->side != DEM_SIDE_BOTH)
         settled.moments = DEM_MOMENTS_FREE;
     DEM_TRY(dem_pack_grain_open(mesh, &grain, error));
-    dem_status status = options->gap > 0 ? dem_pack_target(ctx, &grain, &settled, pack_count, pack, error)
-                                         : pack_count(ctx, &grain, &settled, pack, error);
+    dem_status status = pack_count(ctx, &grain, &settled, pack, error);
     if (status == DEM_OK) {
         dem_pack_stand_in in = dem_pack_grain_stand_in(&grain);
         pack->stand_in_triangles = in.triangles;
@@ -99,5 +97,6 @@ const dem_packer dem_packer_optimal = {
     .name = "optimal",
     .about = "Least symmetric difference between grain and union: greedy medial balls, pruned and relaxed, then polished "
              "on line integrals with the union's moments equal to the grain's.",
+    .keeps_moments = true,
     .run = run_optimal,
 };

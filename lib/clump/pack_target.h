@@ -1,16 +1,13 @@
-/// The fewest spheres for a gap asked for.
+/// The fewest spheres for a gap and for other targets, with any packer.
 #ifndef DEM_CLUMP_PACK_TARGET_H
 #define DEM_CLUMP_PACK_TARGET_H
 
-#include "clump/pack_grain.h"
+#include "clump/pack.h"
 
-/// One packing of options->spheres, whatever options->gap says.
-typedef dem_status dem_pack_count_run(const dem_ctx *ctx, const dem_pack_grain *grain, const dem_pack_options *options,
-                                      dem_pack *pack, dem_error *error);
-
-/// Searches the number of spheres, at most options->max_spheres, whose gap as dem_fidelity_measure sees it is at most
-/// options->gap. Not reached: the best found, pack->reached false, and a warning.
-dem_status dem_pack_target(const dem_ctx *ctx, const dem_pack_grain *grain, const dem_pack_options *options,
-                           dem_pack_count_run *run, dem_pack *pack, dem_error *error);
+/// Searches the number of spheres, at most options->max_spheres, with which the packing has the gap and keeps the
+/// targets that are asked for, as dem_fidelity_measure sees it. Not reached: the best found, pack->reached false, and
+/// a warning. Stopped: the best so far, pack->interrupted true; DEM_INTERRUPTED where there is none yet.
+dem_status dem_pack_target(const dem_ctx *ctx, const dem_mesh *mesh, const dem_packer *packer,
+                           const dem_pack_options *options, dem_pack *pack, dem_error *error);
 
 #endif

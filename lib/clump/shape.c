@@ -29,7 +29,7 @@
 static dem_status size_measure(const dem_mesh *mesh, double size, dem_shape *shape, dem_error *error)
 {
     double edges[3];
-    DEM_TRY(dem_mesh_min_box(mesh, edges, error));
+    DEM_TRY(dem_mesh_min_box(mesh, edges, NULL, error));
     shape->longest = edges[0] * size;
     shape->intermediate = edges[1] * size;
     shape->shortest = edges[2] * size;

@@ -2,6 +2,7 @@
 #ifndef DEM_MESH_GRAIN_H
 #define DEM_MESH_GRAIN_H
 
+#include "base/parameter.h"
 #include "base/random.h"
 #include "base/status.h"
 #include "dem/mesh.h"
@@ -9,13 +10,8 @@
 
 enum { DEM_GRAIN_PARAMS = 16 };
 
-typedef struct dem_grain_param {
-    const char *name;
-    double standard;  ///< used when none is given; NAN: drawn from the seed
-    double low, high;
-    const char *unit;  ///< "-" pure number, "m" length, "count" whole number
-    const char *help;
-} dem_grain_param;
+/// Its standard NAN: drawn from the seed.
+typedef dem_parameter dem_grain_param;
 
 /// What a kind is given to work with.
 typedef struct dem_grain_request {

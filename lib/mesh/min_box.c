@@ -357,7 +357,7 @@ static size_t centred_points(const dem_mesh *mesh, dem_vec3 *points, unsigned ch
     return count;
 }
 
-dem_status dem_mesh_min_box(const dem_mesh *mesh, double edges[3], dem_error *error)
+dem_status dem_mesh_min_box(const dem_mesh *mesh, double edges[3], dem_vec3 axes[3], dem_error *error)
 {
     dem_status status = DEM_OK;
     dem_vec3 *points = dem_alloc(mesh->vertex_count, sizeof *points), extreme[EXTREME_POINTS];
@@ -378,7 +378,14 @@ dem_status dem_mesh_min_box(const dem_mesh *mesh, double edges[3], dem_error *er
                 double swap = edges[i];
                 edges[i] = edges[i + 1];
                 edges[i + 1] = swap;
+                dem_vec3 axis = f.axis[i];
+                f.axis[i] = f.axis[i + 1];
+                f.axis[i + 1] = axis;
             }
+    for (int k = 0; axes && k < 2; k++)
+        axes[k] = f.axis[k];
+    if (axes)
+        axes[2] = v3_cross(axes[0], axes[1]);
     if (!(f.volume < INFINITY) || edges[1] <= 1e-12 * edges[0])
         status = dem_fail(error, DEM_BAD_INPUT, "all vertices lie on one line; give a mesh of a solid");
 done:

@@ -206,6 +206,29 @@ dem_status dem_picture_render(const dem_ctx *ctx, const dem_mesh *mesh, const de
     return dem_grain_render(ctx, &grain, width, height, image, left, error);
 }
 
+dem_status dem_picture_render_part(const dem_ctx *ctx, const dem_mesh *mesh, const dem_ball *balls, size_t count,
+                                   dem_picture_part part, int width, int height, dem_image *image, dem_error *error)
+{
+    const dem_grain_picture grain = {.mesh = mesh, .balls = balls, .count = count};
+    model m;
+    *image = (dem_image){0};
+    if (count == 0)
+        return dem_fail(error, DEM_USAGE, "there are no spheres to draw");
+    dem_colour *colours = dem_alloc(count, sizeof *colours);
+    if (!colours)
+        return dem_fail_memory(error);
+    fill_model(&grain, colours, &m);
+    dem_view view = view_of(&grain, &m, m.scene.body_count == 2 ? 2 * width : width, height);
+    view.width = width;
+    m.scene.bodies = &m.bodies[part == DEM_PICTURE_GRAIN ? m.scene.body_count - 1 : 0];
+    m.scene.body_count = 1;
+    dem_status status = colour_balls(balls, count, colours, error);
+    if (status == DEM_OK)
+        status = dem_render(ctx, &m.scene, &view, image, error);
+    free(colours);
+    return status;
+}
+
 dem_status dem_picture_draw(const dem_ctx *ctx, const dem_mesh *mesh, const dem_ball *balls, size_t count,
                             dem_buffer *out, dem_error *error)
 {

@@ -29,6 +29,12 @@ dem_status dem_grain_render(const dem_ctx *ctx, const dem_grain_picture *grain, 
 dem_status dem_picture_render(const dem_ctx *ctx, const dem_mesh *mesh, const dem_ball *balls, size_t count, int width,
                               int height, dem_image *image, dem_view *view, dem_error *error);
 
+/// Draws one of the two, at the scale and from the side that hold both: pictures of clumps that lie beside that of their
+/// grain.
+typedef enum dem_picture_part { DEM_PICTURE_GRAIN, DEM_PICTURE_BALLS } dem_picture_part;
+dem_status dem_picture_render_part(const dem_ctx *ctx, const dem_mesh *mesh, const dem_ball *balls, size_t count,
+                                   dem_picture_part part, int width, int height, dem_image *image, dem_error *error);
+
 /// Appends the PNG file of dem_picture_clump.
 dem_status dem_picture_draw(const dem_ctx *ctx, const dem_mesh *mesh, const dem_ball *balls, size_t count,
                             dem_buffer *out, dem_error *error);

@@ -86,23 +86,46 @@ typedef enum dem_effort { DEM_EFFORT_FAST, DEM_EFFORT_DEFAULT, DEM_EFFORT_BEST }
 typedef enum dem_moments_kept { DEM_MOMENTS_FREE, DEM_MOMENTS_VOLUME, DEM_MOMENTS_EXACT } dem_moments_kept;
 typedef enum dem_side { DEM_SIDE_BOTH, DEM_SIDE_INSCRIBED, DEM_SIDE_OUTER } dem_side;
 
+/// A bound that a packing's error has to keep, as dem_fidelity_measure sees it.
+typedef struct dem_target {
+    const char *measure;      ///< member of dem_fidelity: "inertia_error"; dem_target_read knows shorter names
+    double bound;             ///< of its size, in its unit
+} dem_target;
+/// Reads "inertia=0.5%", "hausdorff=2%", "normal=8deg", "overlap=1.5", "pieces=1". Error: DEM_USAGE.
+DEM_API dem_status dem_target_read(const char *text, dem_target *target, dem_error *error);
+/// The largest of error / bound; at most 1: all targets hold.
+DEM_API double dem_target_ratio(const dem_target *targets, size_t count, const dem_fidelity *fidelity);
+
+/// A parameter of a packing method, by the name the registry gives it.
+typedef struct dem_pack_value {
+    const char *name;
+    double value;
+} dem_pack_value;
+enum { DEM_PACK_VALUES = 8 };  ///< most parameters of a method
+
 /// A packing to make. Zero-initialised fields take the defaults in brackets.
 typedef struct dem_pack_options {
     const char *method;       ///< registry name ["optimal"]
-    size_t spheres;           ///< at most so many [50]; ignored when `gap` is given
+    size_t spheres;           ///< at most so many [50, or max_spheres where the method's parameters set the number];
+                              ///< ignored when `gap` or targets are given
     double gap;               ///< fewest spheres whose IoU gap is at most this fraction [0: not asked]
-    size_t max_spheres;       ///< bound of `gap` [2000]
+    const dem_target *targets;  ///< [target_count] fewest spheres for which these hold, too
+    size_t target_count;
+    size_t max_spheres;       ///< bound of `gap` and targets [2000]
     dem_effort effort;        ///< set by dem_pack_defaults
     dem_moments_kept moments; ///< set by dem_pack_defaults
     dem_side side;
     uint64_t seed;            ///< [1]
+    const dem_pack_value *values;  ///< parameters of the method; those not named take their defaults [none]
+    size_t value_count;
 } dem_pack_options;
 DEM_API dem_pack_options dem_pack_defaults(void);
 
 typedef struct dem_pack {
     dem_ball *balls;          ///< malloc'd, in the frame of the mesh [m]
     size_t count;
-    bool reached;             ///< the asked gap or, without one, always true
+    bool reached;             ///< the asked gap and targets or, without any, always true
+    bool interrupted;         ///< the search for them was stopped; this is the best so far
     dem_moments_kept moments; ///< what was met: exact (10 moments), volume (and centre), free
     double moment_residual;   ///< largest relative residual of the moments met [-]
     double gap_estimate;      ///< IoU gap as the packer saw it [-]
@@ -111,6 +134,8 @@ typedef struct dem_pack {
     double stand_in_volume;   ///< how much larger it is, relative to the mesh [-]
     double stand_in_distance; ///< farthest vertex of the mesh from it, over the equivalent diameter [-]
     double seconds;           ///< [s]
+    dem_pack_value used[DEM_PACK_VALUES];  ///< the parameters of the method as they were used, found ones too
+    size_t used_count;
 } dem_pack;
 
 /// Packs spheres into a repaired mesh. Same result for a given seed and any number of threads.
