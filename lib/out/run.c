@@ -33,7 +33,8 @@ typedef struct runner {
     uint64_t last_step;                               // 0: by time
     double next_frame, next_series, next_checkpoint;  // [s]; the last by either clock
     double started, diagnosed;                        // by the wall's clock
-    double output_seconds;
+    double output_seconds, timed_since;
+    uint64_t timed_from;     // step
     uint64_t measured_step;  // of the views; UINT64_MAX: none
 } runner;
 
@@ -188,15 +189,23 @@ static dem_status step_ahead(runner *r, uint64_t steps, dem_error *error)
     return status;
 }
 
-static dem_status loop(runner *r, dem_error *error)
+// what is timed: everything from here on
+static void start_clock(runner *r)
 {
-    double rate = 1000, begin = dem_clock(), looked = begin, outputs = r->output_seconds;
-    uint64_t from = dem_world_steps(r->w);
-    bool timed = r->options->warmup == 0 || from >= r->options->warmup;
+    dem_world_reset_clocks(r->w);
+    r->timed_from = dem_world_steps(r->w);
+    r->output_seconds = 0;
+    r->timed_since = dem_clock();
+}
+
+static dem_status step_to_end(runner *r, dem_error *error)
+{
+    double rate = 1000, looked = dem_clock();
+    uint64_t warmup = r->options->warmup;
     while (!over(r)) {
         uint64_t ahead = steps_ahead(r, rate), at = dem_world_steps(r->w);
-        if (!timed && at + ahead > r->options->warmup)
-            ahead = r->options->warmup - at;
+        if (at < warmup && at + ahead > warmup)
+            ahead = warmup - at;
         double t0 = dem_clock();
         DEM_TRY(step_ahead(r, ahead, error));
         double spent = dem_clock() - t0;
@@ -207,18 +216,24 @@ static dem_status loop(runner *r, dem_error *error)
             if (tell(r, rate))
                 return interrupted(r, error);
         }
-        if (!timed && dem_world_steps(r->w) >= r->options->warmup) {
-            timed = true;
-            dem_world_reset_clocks(r->w);
-            begin = dem_clock();
-            outputs = r->output_seconds;
-            from = dem_world_steps(r->w);
-        }
+        if (at < warmup && dem_world_steps(r->w) >= warmup)
+            start_clock(r);
     }
-    r->result->loop_seconds = dem_clock() - begin;
-    r->result->timed_steps = dem_world_steps(r->w) - from;
-    r->output_seconds -= outputs;
     return DEM_OK;
+}
+
+// also a run that fails tells how far it came
+static dem_status loop(runner *r, dem_error *error)
+{
+    r->timed_from = dem_world_steps(r->w);
+    r->output_seconds = 0;
+    r->timed_since = dem_clock();
+    dem_status status = step_to_end(r, error);
+    if (status == DEM_FAILED)
+        measure(r, NULL);
+    r->result->loop_seconds = dem_clock() - r->timed_since;
+    r->result->timed_steps = dem_world_steps(r->w) - r->timed_from;
+    return status;
 }
 
 // a name for the scene that does not depend on when it ends and what it writes

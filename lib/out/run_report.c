@@ -166,8 +166,7 @@ static void put_head(dem_buffer *out, const dem_run_report *r)
                      r->title && *r->title ? ": " : "", f->bodies, f->bodies == 1 ? "" : "s", f->spheres,
                      (unsigned long long)r->steps);
     put_number(out, f->time, FIGURES);
-    dem_buffer_print(out, " s%s%s\n", r->ended && strcmp(r->ended, "done") != 0 ? ", " : "",
-                     r->ended && strcmp(r->ended, "done") != 0 ? r->ended : "");
+    dem_buffer_print(out, " s%s\n", r->ended && strcmp(r->ended, "done") != 0 ? ", stopped early" : "");
 }
 
 static void put_speed(dem_buffer *out, const dem_run_report *r)

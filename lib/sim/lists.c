@@ -18,9 +18,9 @@ static bool finite_body(const dem_bodies *b, size_t row)
 static dem_status fail_body(const dem_world *w, size_t row, dem_error *error, const char *what)
 {
     dem_vec3 x = body_position(&w->bodies, row);
-    return dem_fail(error, DEM_FAILED, "body %u (%s) at (%.4g, %.4g, %.4g) m %s in step %llu, t = %.6g s",
-                    (unsigned)w->views.by_row[row], w->shape_names[w->bodies.shape[row]], x.x, x.y, x.z, what,
-                    (unsigned long long)w->steps, dem_world_time(w));
+    return dem_fail(error, DEM_FAILED, "step %llu, t = %.6g s: body %u (%s) at (%.4g, %.4g, %.4g) m %s",
+                    (unsigned long long)w->steps, dem_world_time(w), (unsigned)w->views.by_row[row],
+                    w->shape_names[w->bodies.shape[row]], x.x, x.y, x.z, what);
 }
 
 static bool outside(const dem_world *w, size_t row)
