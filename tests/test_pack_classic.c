@@ -127,6 +127,28 @@ static void favier_on_a_capsule_finds_its_radius_everywhere(void **state)
     dem_mesh_free(&capsule);
 }
 
+// a ring of square section about z
+static dem_mesh square_ring(double radius, double half)
+{
+    enum { TURNS = 32 };
+    static const double side[4][2] = {{-1, -1}, {1, -1}, {1, 1}, {-1, 1}};
+    dem_vec3 vertices[4 * TURNS];
+    uint32_t triangles[4 * TURNS * 6], *t = triangles;
+    for (uint32_t i = 0; i < TURNS; i++)
+        for (uint32_t k = 0; k < 4; k++) {
+            double turn = 2 * DEM_PI * i / TURNS, out = radius + half * side[k][0];
+            uint32_t a = 4 * i + k, b = 4 * ((i + 1) % TURNS) + k, next = (k + 1) % 4 - k;
+            vertices[a] = v3(out * cos(turn), out * sin(turn), half * side[k][1]);
+            const uint32_t faces[6] = {a, b, b + next, a, b + next, a + next};
+            for (int c = 0; c < 6; c++)
+                *t++ = faces[c];
+        }
+    dem_mesh ring = shape_copy(vertices, 4 * TURNS, triangles, (size_t)8 * TURNS);
+    if (dem_mesh_solid(&ring).volume < 0)
+        shape_flip(&ring, 0, ring.triangle_count);
+    return ring;
+}
+
 static void favier_uses_the_axis_asked_for_and_says_when_it_never_meets_the_inside(void **state)
 {
     (void)state;
@@ -143,6 +165,18 @@ static void favier_uses_the_axis_asked_for_and_says_when_it_never_meets_the_insi
         dem_pack_free(&p);
     }
     dem_mesh_free(&box);
+    dem_mesh ring = square_ring(1, 0.2);
+    dem_pack p = pack(&ring, "favier", 2);
+    check(p.count == 2 && used(&p, "axis") < 3);
+    dem_pack_free(&p);
+    dem_pack_options options = dem_pack_defaults();
+    dem_error error;
+    options.method = "favier";
+    options.values = &(dem_pack_value){"axis", 3};
+    options.value_count = 1;
+    check(dem_clump_pack(NULL, &ring, &options, &p, &error) == DEM_FAILED);
+    check(strstr(error.text, "axis") && strstr(error.text, "another"));
+    dem_mesh_free(&ring);
 }
 
 static void a_grid_in_a_cube_has_the_spheres_and_the_volume_of_geometry(void **state)

@@ -58,12 +58,13 @@ static dem_status check_values(const dem_packer *packer, const dem_pack_options 
     DEM_ASSERT(packer->parameter_count <= DEM_PACK_VALUES);
     for (size_t i = 0; i < options->value_count; i++) {
         const dem_pack_value *v = &options->values[i];
-        const dem_parameter *p = packer->parameters;
-        while (p < packer->parameters + packer->parameter_count && strcmp(p->name, v->name) != 0)
-            p++;
-        if (p == packer->parameters + packer->parameter_count)
+        size_t at = 0;
+        while (at < packer->parameter_count && strcmp(packer->parameters[at].name, v->name) != 0)
+            at++;
+        if (at == packer->parameter_count)
             return dem_fail(error, DEM_USAGE, "the method %s has no parameter '%s'; --methods lists them", packer->name,
                             v->name);
+        const dem_parameter *p = &packer->parameters[at];
         if (isnan(v->value))
             continue;
         bool whole = strcmp(p->unit, "count") != 0 || v->value == floor(v->value);

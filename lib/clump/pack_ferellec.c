@@ -73,12 +73,15 @@ static void shuffle(seeds *all, uint64_t seed)
 
 static dem_status place(dem_classic *c, dem_error *error)
 {
-    static const double radii[] = {0,    0.01, 0.015, 0.02, 0.025, 0.03,  0.035, 0.04,  0.05,
-                                   0.06, 0.07, 0.08,  0.09, 0.1,   0.115, 0.13,  0.145, 0.16,
-                                   0.18, 0.2,  0.23,  0.26, 0.3,   0.35,  0.4,   0.45,  0.48};
+    enum { RADII = 28 };
+    double radii[RADII], largest = 0;
     seeds all = {.step = c->value[RSTEP]};
     DEM_TRY(dem_classic_tangents(c, SEEDS, &all.items, &all.count, error));
     shuffle(&all, c->options->seed);
+    for (size_t i = 0; i < all.count; i++)
+        largest = fmax(largest, all.items[i].ball.radius);
+    for (int k = 0; k < RADII; k++)  // closer to each other where they are small, up to nearly the largest
+        radii[k] = 0.98 * largest * k / (RADII - 1) * (k + RADII) / (2 * RADII - 1);
     all.used = (size_t)ceil(c->value[PMAX] * (double)all.count);
     dem_status status = dem_classic_thin(c,
                                          &(dem_thinning){.choose = choose,
@@ -86,7 +89,7 @@ static dem_status place(dem_classic *c, dem_error *error)
                                                          .size_parameter = RMIN,
                                                          .spacing_parameter = DMIN,
                                                          .sizes = radii,
-                                                         .size_count = sizeof radii / sizeof *radii,
+                                                         .size_count = RADII,
                                                          .fewest = fmin(box_diagonal(c->grain->box), 100),
                                                          .most = 0,
                                                          .limit = all.count},

@@ -24,7 +24,8 @@ typedef struct lattice {
     long cells[3];
     dem_ball *places;  // in the grain; the radius is the distance to the surface
     dem_ball *balls;
-    size_t count, most;  // most places that are of use
+    size_t count;
+    int fill;  // the best one of the lattice before
 } lattice;
 
 static dem_status set_box(dem_classic *c, lattice *l, dem_error *error)
@@ -104,28 +105,48 @@ static size_t set_balls(lattice *l, double radius)
     return count;
 }
 
-static dem_status try_fills(lattice *l, double given_fill, bool any_count, double *least, dem_error *error)
+static double fill_at(int k)
+{
+    return least_fill * pow(most_fill / least_fill, (double)k / (FILLS - 1));
+}
+
+// one radius on the lattice at hand: becomes the result where it is better, and tells its gap
+static dem_status try_fill(lattice *l, double fill, bool any_count, double *least, double *gap, dem_error *error)
 {
     dem_classic *c = l->c;
-    int fills = isnan(given_fill) ? FILLS : 1;
+    size_t count = set_balls(l, fill * l->spacing / 2);
+    *gap = INFINITY;
+    if (count == 0 || (!any_count && count > c->options->spheres))
+        return DEM_OK;
+    *gap = dem_classic_gap(c, l->balls, count);
+    if (!(*gap < *least))
+        return DEM_OK;
+    c->value[SPACING] = l->spacing;
+    c->value[FILL] = fill;
+    return dem_classic_offer(c, l->balls, count, least, NULL, error);
+}
+
+// the fill given, or from that of the lattice before up and down as long as it gets better
+static dem_status try_fills(lattice *l, double given_fill, bool any_count, double *least, dem_error *error)
+{
+    double gap, best;
     free(l->balls);
     l->balls = dem_alloc(l->count, sizeof *l->balls);
     if (!l->balls)
         return dem_fail_memory(error);
-    for (int k = 0; k < fills; k++) {
-        double fill = fills == 1 ? given_fill : least_fill * pow(most_fill / least_fill, (double)k / (FILLS - 1));
-        if (fills > 1 && fill * l->spacing / 2 > largest_radius)
-            break;
-        size_t count = set_balls(l, fill * l->spacing / 2);
-        bool kept = false;
-        if (count == 0 || (!any_count && count > c->options->spheres))
-            continue;
-        DEM_TRY(dem_classic_offer(c, l->balls, count, least, &kept, error));
-        if (kept) {
-            c->value[SPACING] = l->spacing;
-            c->value[FILL] = fill;
+    if (!isnan(given_fill))
+        return try_fill(l, given_fill, any_count, least, &gap, error);
+    while (l->fill > 0 && fill_at(l->fill) * l->spacing / 2 > largest_radius)
+        l->fill--;
+    DEM_TRY(try_fill(l, fill_at(l->fill), any_count, least, &best, error));
+    for (int way = -1; way <= 1; way += 2)
+        for (int k = l->fill + way; k >= 0 && k < FILLS && fill_at(k) * l->spacing / 2 <= largest_radius; k += way) {
+            DEM_TRY(try_fill(l, fill_at(k), any_count, least, &gap, error));
+            if (gap > best && isfinite(best))
+                break;
+            best = gap;
+            l->fill = k;
         }
-    }
     return DEM_OK;
 }
 
@@ -153,7 +174,7 @@ static dem_status search(lattice *l, double fill, dem_error *error)
 {
     double spheres = (double)l->c->options->spheres, least = INFINITY;
     double most_cells = fmin(FEWEST_CELLS + CELLS_PER_SPHERE * spheres, MOST_CELLS);
-    for (int part = PARTS;; part++) {
+    for (int part = PARTS;; part += 1 + part / 40) {
         double spacing = l->edges[0] * PARTS / part;
         size_t fewest = SIZE_MAX;
         for (int more = 0; more < 2; more++) {
@@ -175,7 +196,7 @@ static dem_status search(lattice *l, double fill, dem_error *error)
 
 static dem_status place(dem_classic *c, dem_error *error)
 {
-    lattice l = {.c = c};
+    lattice l = {.c = c, .fill = FILLS - 1};
     double spacing = c->value[SPACING], fill = c->value[FILL];
     dem_status status = set_box(c, &l, error);
     if (status == DEM_OK)
