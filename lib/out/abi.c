@@ -26,6 +26,7 @@
         dem_shape *: "dem_shape",               \
         dem_fidelity *: "dem_fidelity",         \
         dem_pack_options *: "dem_pack_options", \
+        dem_pack_value (*)[DEM_PACK_VALUES]: "dem_pack_value", \
         dem_energy *: "dem_energy",             \
         default: "pointer")
 
@@ -90,13 +91,22 @@ static const dem_abi_row rows[] = {
     FIELD(dem_clump_def, seed), FIELD(dem_clump_def, seconds), FIELD(dem_clump_def, version),
     WHOLE(dem_union),
     FIELD(dem_union, solid), FIELD(dem_union, pieces), FIELD(dem_union, redundant),
+    WHOLE(dem_target),
+    FIELD(dem_target, measure), FIELD(dem_target, bound),
+    WHOLE(dem_pack_value),
+    FIELD(dem_pack_value, name), FIELD(dem_pack_value, value),
     WHOLE(dem_pack_options),
     FIELD(dem_pack_options, method), FIELD(dem_pack_options, spheres), FIELD(dem_pack_options, gap),
-    FIELD(dem_pack_options, max_spheres), FIELD(dem_pack_options, effort), FIELD(dem_pack_options, moments),
-    FIELD(dem_pack_options, side), FIELD(dem_pack_options, seed),
+    FIELD(dem_pack_options, targets), FIELD(dem_pack_options, target_count), FIELD(dem_pack_options, max_spheres),
+    FIELD(dem_pack_options, effort), FIELD(dem_pack_options, moments),
+    FIELD(dem_pack_options, side), FIELD(dem_pack_options, seed), FIELD(dem_pack_options, values),
+    FIELD(dem_pack_options, value_count),
     WHOLE(dem_pack),
-    FIELD(dem_pack, balls), FIELD(dem_pack, count), FIELD(dem_pack, reached), FIELD(dem_pack, moments),
-    FIELD(dem_pack, moment_residual), FIELD(dem_pack, gap_estimate), FIELD(dem_pack, seconds),
+    FIELD(dem_pack, balls), FIELD(dem_pack, count), FIELD(dem_pack, reached), FIELD(dem_pack, interrupted),
+    FIELD(dem_pack, moments),
+    FIELD(dem_pack, moment_residual), FIELD(dem_pack, gap_estimate), FIELD(dem_pack, stand_in_triangles),
+    FIELD(dem_pack, stand_in_volume), FIELD(dem_pack, stand_in_distance), FIELD(dem_pack, seconds),
+    FIELD(dem_pack, used), FIELD(dem_pack, used_count),
     WHOLE(dem_make_options),
     FIELD(dem_make_options, pack), FIELD(dem_make_options, density), FIELD(dem_make_options, mass_from),
     FIELD(dem_make_options, name), FIELD(dem_make_options, source_mesh), FIELD(dem_make_options, source_sha256),
