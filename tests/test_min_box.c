@@ -13,7 +13,18 @@ static void check_edges(dem_mesh *mesh, double a, double b, double c, double tol
 {
     double edges[3];
     dem_error error;
-    check_ok(dem_mesh_min_box(mesh, edges, &error), error);
+    dem_vec3 axes[3];
+    check_ok(dem_mesh_min_box(mesh, edges, axes, &error), error);
+    // along its axes the mesh is as long as the edges say
+    check_vec(v3_cross(axes[0], axes[1]), axes[2], 1e-12);
+    for (int k = 0; k < 3; k++) {
+        double low = INFINITY, high = -INFINITY;
+        for (size_t i = 0; i < mesh->vertex_count; i++) {
+            low = fmin(low, v3_dot(axes[k], mesh->vertices[i]));
+            high = fmax(high, v3_dot(axes[k], mesh->vertices[i]));
+        }
+        check_near(high - low, edges[k], 1e-9 * edges[0]);
+    }
     check_close(edges[0], a, tolerance);
     check_close(edges[1], b, tolerance);
     check_close(edges[2], c, tolerance);
@@ -66,7 +77,7 @@ static void scale_and_place_do_not_matter(void **state)
     dem_mesh grain = shape_grain(10);
     double want[3];
     dem_error error;
-    check_ok(dem_mesh_min_box(&grain, want, &error), error);
+    check_ok(dem_mesh_min_box(&grain, want, NULL, &error), error);
     dem_mesh_free(&grain);
     for (int k = -9; k <= 9; k += 9) {
         double scale = pow(10, k);
@@ -85,7 +96,7 @@ static void a_line_has_no_box(void **state)
     dem_mesh mesh = shape_copy((dem_vec3[]){{0, 0, 0}, {1, 1, 1}, {2, 2, 2}}, 3, (uint32_t[]){0, 1, 2}, 1);
     double edges[3];
     dem_error error;
-    check(dem_mesh_min_box(&mesh, edges, &error) == DEM_BAD_INPUT);
+    check(dem_mesh_min_box(&mesh, edges, NULL, &error) == DEM_BAD_INPUT);
     dem_mesh_free(&mesh);
 }
 

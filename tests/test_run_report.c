@@ -171,7 +171,7 @@ static void an_empty_run_has_no_speed(void **state)
     r.figures.energy.error = NAN;
     dem_buffer out = {0};
     dem_run_report_text(&out, &r);
-    check(strstr(out.data, "0 clumps of 0 spheres, 0 steps to 0 s, interrupted\n") == out.data);
+    check(strstr(out.data, "0 clumps of 0 spheres, 0 steps to 0 s, stopped early\n") == out.data);
     check(strstr(out.data, "speed      - steps/s, - us") && strstr(out.data, "critical one is any s"));
     check(!strstr(out.data, "nan") && !strstr(out.data, "inf") && !strstr(out.data, "accounted"));
     check(strstr(out.data, "gravity") && !strstr(out.data, "friction"));

@@ -35,7 +35,7 @@ static bool holds(const char *text, const char *const words[])
 static cli_values values_named(const char *argument)
 {
     static const char *const folders[] = {"DIR", "FOLDER", NULL};
-    static const char *const files[] = {"FILE",  "CHECKPOINT", "MESH",     "SCENE", "CLUMP",
+    static const char *const files[] = {"FILE",  "INPUT",  "CHECKPOINT", "MESH",     "SCENE", "CLUMP",
                                         "TABLE", "SCRIPT",     "TEMPLATE", "PATH",  NULL};
     if (strchr(argument, '='))
         return CLI_VALUES_ANY;

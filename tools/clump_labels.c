@@ -58,7 +58,7 @@ static void set_unit(const dem_ctx *ctx, const job_options *options, const batch
         dem_log(ctx, DEM_LOG_WARNING, "the file tells no unit of length: its spacing is taken in metres; give --unit");
     }
     if (!v->spaced)
-        dem_log(ctx, DEM_LOG_WARNING, "the file tells no size of its voxels: they are taken as 1; give --spacing");
+        dem_log(ctx, DEM_LOG_WARNING, "the file tells no size of its voxels: they are taken as 1; give --voxel-size");
 }
 
 typedef struct left_out {

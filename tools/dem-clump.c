@@ -34,7 +34,7 @@ typedef struct arguments {
     dem_pack_value values[DEM_PACK_VALUES];
     size_t value_count;
     // of many grains
-    const char *list, *sheet, *raw, *spacing, *labels;
+    const char *list, *sheet, *raw, *voxel_size, *labels;
     bool recursive, resume, drop_border;
     long min_voxels;
 } arguments;
@@ -288,8 +288,8 @@ static int batch_options_from(const cli_tool *tool, const arguments *a, batch_op
                              .drop_border = a->drop_border};
     if (a->raw && dem_volume_raw_parse(a->raw, &batch->raw, &error) != DEM_OK)
         return cli_wrong_usage(tool, "--raw: %s", error.text);
-    if (a->spacing && parse_spacing(a->spacing, &batch->spacing, &error) != DEM_OK)
-        return cli_wrong_usage(tool, "--spacing: %s", error.text);
+    if (a->voxel_size && parse_spacing(a->voxel_size, &batch->spacing, &error) != DEM_OK)
+        return cli_wrong_usage(tool, "--voxel-size: %s", error.text);
     if (a->labels && labels_parse(a->labels, &error) != DEM_OK)
         return cli_wrong_usage(tool, "--labels: %s", error.text);
     if (a->resume && a->split)
@@ -427,7 +427,7 @@ int main(int argc, char **argv)
         {"labels", 0, CLI_TEXT, "LIST", "only these, as 3,7,10-20 (default: all but 0, the background)", &a.labels, 0, 0},
         {"min-voxels", 0, CLI_WHOLE, "N", "leave out labels of fewer voxels (default 500)", &a.min_voxels, 1, 0x1p53},
         {"drop-border", 0, CLI_FLAG, NULL, "leave out labels that the border of the image cuts", &a.drop_border, 0, 0},
-        {"spacing", 0, CLI_TEXT, "D", "size of a voxel, as 5um or 5um,5um,10um (default: as the file says)", &a.spacing, 0,
+        {"voxel-size", 0, CLI_TEXT, "D", "size of a voxel, as 5um or 5um,5um,10um (default: as the file says)", &a.voxel_size, 0,
          0},
         {"raw", 0, CLI_TEXT, "SIZES", "the files have no header but are as '512x512x300 uint16 little skip 0'", &a.raw, 0,
          0},

@@ -52,7 +52,7 @@ refused empty.obj 'empty'
 refused empty.stl 'empty'
 refused missing.obj 'no such file'
 mkdir folder.obj
-refused folder.obj 'directory'
+refused folder.obj 'no mesh in this folder'
 ln -s nowhere.obj link.obj
 refused link.obj 'link'
 head -c 2000 plain.obj >vertices_cut.obj

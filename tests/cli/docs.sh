@@ -87,7 +87,7 @@ offers 'a.stl b.obj deep' dem-clump a.stl -o ''
 offers '' dem-clump --spheres ''
 offers '' dem-clump --unit ''
 offers '' dem-grain ''
-offers 'deep' dem-view ''
+offers 'a.stl b.obj deep' dem-view ''
 offers 'deep' dem-run -o ''
 offers '' dem-run -D ''
 offers 'a.stl b.obj deep' dem-run --resume ''
@@ -118,7 +118,7 @@ if command -v fish >/dev/null; then
     fish_offers '--effort' 'dem-clump --eff'
     fish_offers 'best default fast' 'dem-clump --effort '
     fish_offers 'a.stl' 'dem-clump a'
-    fish_offers 'deep/' 'dem-view '
+    fish_offers 'a.stl b.obj deep/' 'dem-view '
     fish_offers '' 'dem-grain '
 fi
 finish

@@ -53,28 +53,28 @@ mentions 'several grains'
 run 0 dem-clump plain.nrrd $fast -o some/ -o t.csv --labels 1-4,99 --unit um
 [ "$(ls some/*[0-9].json)" = some/plain_3.json ] || fail "--labels: $(ls some)"
 near "$(column volume_m3 3)" "$(awk -v n="$(column voxels 3)" 'BEGIN { print n * 1e-18 }')" 2e-19
-run 0 dem-clump plain.nrrd $fast -o c/ -o t.csv --labels 3 --spacing 5um,5um,10um
+run 0 dem-clump plain.nrrd $fast -o c/ -o t.csv --labels 3 --voxel-size 5um,5um,10um
 near "$(column volume_m3 3)" "$(awk -v n="$(column voxels 3)" 'BEGIN { print n * 250e-18 }')" 4e-17
 run 0 dem-clump plain.nrrd $fast -o border/ -o t.csv --min-voxels 20 --labels 40
 mentions 'cut flat by the border'
 [ "$(column status 40)" = done ] || fail "a grain at the border"
 mentions 'tells no unit'
 mentions 'tells no size'
-run 2 dem-clump plain.nrrd --spacing 5um,5um
-run 2 dem-clump plain.nrrd --spacing -5um
+run 2 dem-clump plain.nrrd --voxel-size 5um,5um
+run 2 dem-clump plain.nrrd --voxel-size -5um
 
 # the same voxels raw and packed give the same clump
 voxels | tr ' ' '\n' | awk '{ printf "\\%03o", $1 }' >octal
 printf "$(cat octal)" >scan.raw
 [ "$(wc -c <scan.raw)" = $((30 * 16 * 14)) ] || fail "the test's own raw file"
-run 0 dem-clump scan.raw --raw '30x16x14 uint8' --spacing 5um $fast -q -o raw/ --format xyzr --labels 12
+run 0 dem-clump scan.raw --raw '30x16x14 uint8' --voxel-size 5um $fast -q -o raw/ --format xyzr --labels 12
 { printf 'NRRD0004\ntype: uint8\ndimension: 3\nsizes: 30 16 14\nencoding: gzip\nspacings: 5 5 5\ndata file: scan.raw.gz\n'; } >packed.nhdr
 run 3 dem-clump packed.nhdr $fast -q -o raw/
 mentions 'error: packed.nhdr: .*scan.raw.gz.*cannot be read'
 gzip -k scan.raw
-run 0 dem-clump packed.nhdr --spacing 5um $fast -q -o raw/ --format xyzr --labels 12
+run 0 dem-clump packed.nhdr --voxel-size 5um $fast -q -o raw/ --format xyzr --labels 12
 printf 'NDims = 3\nDimSize = 30 16 14\nElementSpacing = 5 5 5\nElementType = MET_UCHAR\nElementDataFile = scan.raw\n' >meta.mhd
-run 0 dem-clump meta.mhd --spacing 5um $fast -q -o raw/ --format xyzr --labels 12
+run 0 dem-clump meta.mhd --voxel-size 5um $fast -q -o raw/ --format xyzr --labels 12
 for other in packed meta; do
     diff <(grep -v '^#' raw/scan_12.xyzr) <(grep -v '^#' raw/${other}_12.xyzr) >d || fail "$other differs: $(head -c 300 d)"
 done

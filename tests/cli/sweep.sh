@@ -94,7 +94,7 @@ usage 'needs a value' --sweep
 usage 'leave out -n, -e and --target' --sweep 3 -n 5
 usage 'leave out -n, -e and --target' --sweep 3 -e 5
 usage 'leave out -n, -e and --target' --sweep 3 --target gap=3
-usage 'neither with --split' --sweep 3 --split
+usage 'none of --split' --sweep 3 --split
 usage 'a sweep writes .csv, .svg and .html' --sweep 3 -o x.json
 usage '--ratio belongs to method bubble' --sweep 3 --methods grid --ratio 0.5
 run 4 dem-clump "$grain" --sweep 3 --methods bubble -q -o no/such/folder.csv
