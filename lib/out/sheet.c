@@ -7,15 +7,17 @@
 
 #include "base/file.h"
 #include "base/memory.h"
-#include "out/font.h"
+#include "out/grid.h"
 
-enum { PAGE_CELLS = 400, WIDTH = 240, HEIGHT = 120, GAP = 8, CAPTION = 2 * DEM_FONT_HEIGHT + 4 };
+enum { PAGE_CELLS = 400, WIDTH = 240, HEIGHT = 120, GAP = 8, CAPTION = 30 };
+enum { TITLE_LINE = 12, NOTE_LINE = 26 };  // of writing, under the picture
 
-static const uint8_t INK[3] = {40, 40, 40}, PALE[3] = {120, 120, 120}, ALARM[3] = {180, 40, 30};
+static const double TITLE_SIZE = 8, NOTE_SIZE = 7;
+static const dem_rgb INK = {40, 40, 40}, PALE = {120, 120, 120}, ALARM = {180, 40, 30}, WHITE = {255, 255, 255};
 
 typedef struct sheet_cell {
     dem_image picture;
-    char title[WIDTH / DEM_FONT_WIDTH + 1], note[WIDTH / DEM_FONT_WIDTH + 1];
+    char title[128], note[128];
 } sheet_cell;
 
 struct dem_sheet {
@@ -34,18 +36,19 @@ dem_sheet *dem_sheet_create(const char *path)
     return sheet;
 }
 
-static void put_picture(dem_image *page, const dem_image *picture, int x, int y)
+static dem_status put_line(dem_image *page, int x, int y, double size, dem_rgb ink, const char *text, dem_error *error)
 {
-    int width = picture->width < WIDTH ? picture->width : WIDTH;
-    for (int row = 0; row < picture->height && row < HEIGHT; row++)
-        memcpy(page->pixels + 3 * ((size_t)(y + row) * (size_t)page->width + (size_t)x),
-               picture->pixels + 3 * (size_t)row * (size_t)picture->width, 3 * (size_t)width);
+    char room[160];
+    const dem_text_style style = {.size = size, .ink = ink, .align = DEM_ALIGN_CENTRE};
+    return dem_text_draw(page, x + WIDTH / 2.0, y, &style, dem_text_fit(text, size, WIDTH, room, sizeof room), error);
 }
 
-static void put_centred(dem_image *page, int x, int y, const char *text, const uint8_t colour[3])
+static dem_status put_cell(dem_image *page, const sheet_cell *cell, int x, int y, dem_error *error)
 {
-    int width = (int)strlen(text) * DEM_FONT_WIDTH;
-    dem_font_draw(page, x + (WIDTH - width) / 2, y, text, colour);
+    if (cell->picture.pixels)
+        dem_image_paste(page, &cell->picture, x, y);
+    DEM_TRY(put_line(page, x, y + HEIGHT + TITLE_LINE, TITLE_SIZE, INK, cell->title, error));
+    return put_line(page, x, y + HEIGHT + NOTE_LINE, NOTE_SIZE, cell->picture.pixels ? PALE : ALARM, cell->note, error);
 }
 
 static dem_status write_page(const dem_sheet *sheet, const dem_image *page, dem_error *error)
@@ -80,15 +83,12 @@ static dem_status finish_page(dem_sheet *sheet, dem_error *error)
     dem_image page;
     dem_status status = dem_image_create(columns * (WIDTH + GAP) + GAP, rows * cell_height + GAP, &page, error);
     if (status == DEM_OK)
-        memset(page.pixels, 255, 3 * (size_t)page.width * (size_t)page.height);
+        dem_image_fill(&page, WHITE);
     for (int i = 0; i < count; i++) {
         sheet_cell *cell = &sheet->cells[i];
         int x = GAP + i % columns * (WIDTH + GAP), y = GAP + i / columns * cell_height;
-        if (status == DEM_OK) {
-            put_picture(&page, &cell->picture, x, y);
-            put_centred(&page, x, y + HEIGHT + 3, cell->title, INK);
-            put_centred(&page, x, y + HEIGHT + 3 + DEM_FONT_HEIGHT, cell->note, cell->picture.pixels ? PALE : ALARM);
-        }
+        if (status == DEM_OK)
+            status = put_cell(&page, cell, x, y, error);
         dem_image_free(&cell->picture);
     }
     if (status == DEM_OK)
