@@ -297,3 +297,16 @@ dem_status engine_read(const engine_question *question, const dem_buffer *printe
     }
     return DEM_OK;
 }
+
+dem_status engine_move(const engine_question *question, const engine *e, engine_answer *answer,
+                       const char *const *arguments, dem_error *error)
+{
+    dem_buffer printed = {0};
+    dem_status status = engine_run(question, e, answer, arguments, &printed, error);
+    for (int motion = 0; motion < ENGINE_MOTIONS; motion++)
+        answer->motions[motion].rate = motion == 0 ? engine_reach(question) : 1;
+    if (status == DEM_OK)
+        status = engine_read(question, &printed, answer, error);
+    dem_buffer_release(&printed);
+    return status;
+}

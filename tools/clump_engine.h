@@ -69,7 +69,10 @@ dem_status engine_run(const engine_question *question, const engine *e, engine_a
 /// vz` in the files motion0.dump to motion3.dump.
 dem_status engine_read(const engine_question *question, const dem_buffer *printed, engine_answer *answer,
                        dem_error *error);
-/// The same of one dump.
+/// Runs the program and reads all motions, at the rates of engine_reach: for programs that can be given every motion.
+dem_status engine_move(const engine_question *question, const engine *e, engine_answer *answer,
+                       const char *const *arguments, dem_error *error);
+/// The spheres of one dump.
 dem_status engine_read_spheres(const engine_question *question, const char *file, engine_motion *motion,
                                dem_error *error);
 /// The numbers in the first row of the last table of a dump.

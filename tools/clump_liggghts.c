@@ -79,15 +79,8 @@ static dem_status write_deck(const engine_question *q, dem_error *error)
 static dem_status ask_liggghts(const engine_question *q, engine_answer *answer, dem_error *error)
 {
     static const char *const arguments[] = {"-in", "in.liggghts", "-log", "none", NULL};
-    dem_buffer printed = {0};
     DEM_TRY(write_deck(q, error));
-    dem_status status = engine_run(q, &engine_liggghts, answer, arguments, &printed, error);
-    for (int motion = 0; motion < ENGINE_MOTIONS; motion++)
-        answer->motions[motion].rate = motion == 0 ? engine_reach(q) : 1;
-    if (status == DEM_OK)
-        status = engine_read(q, &printed, answer, error);
-    dem_buffer_release(&printed);
-    return status;
+    return engine_move(q, &engine_liggghts, answer, arguments, error);
 }
 
 const engine engine_liggghts = {

@@ -53,15 +53,8 @@ static dem_status write_script(const engine_question *q, dem_error *error)
 static dem_status ask_yade(const engine_question *q, engine_answer *answer, dem_error *error)
 {
     static const char *const arguments[] = {"-n", "-x", "-j1", "motion.py", NULL};
-    dem_buffer printed = {0};
     DEM_TRY(write_script(q, error));
-    dem_status status = engine_run(q, &engine_yade, answer, arguments, &printed, error);
-    for (int motion = 0; motion < ENGINE_MOTIONS; motion++)
-        answer->motions[motion].rate = motion == 0 ? engine_reach(q) : 1;
-    if (status == DEM_OK)
-        status = engine_read(q, &printed, answer, error);
-    dem_buffer_release(&printed);
-    return status;
+    return engine_move(q, &engine_yade, answer, arguments, error);
 }
 
 const engine engine_yade = {
