@@ -111,7 +111,7 @@ static void the_ledger_holds_for_pulls(void **state)
         double deepest = 0, worst = 0;
         for (int i = 0; i < 500; i++) {
             run_steps(w, 5);
-            worst = fmax(worst, fabs(measured(w)->energy.error));
+            worst = largest(worst, measured(w)->energy.error);
             deepest = fmin(deepest, dem_world_figures(w)->energy.elastic);
         }
         check(dem_world_figures(w)->largest_overlap_ratio > 1e-4);

@@ -74,7 +74,7 @@ static double worst_error(const kind *k, double steps)
         for (int i = 0; i < 1000; i++) {
             run_steps(w, 1 + (uint64_t)steps / 50);
             const dem_figures *f = measured(w);
-            worst = fmax(worst, fabs(f->energy.error));
+            worst = largest(worst, f->energy.error);
             if (f->contacts + f->wall_contacts > 0)
                 touched = true;
             else if (touched)

@@ -240,7 +240,7 @@ static void the_ledger_holds_for_moments(void **state)
             run_steps(w, 5);
             const dem_figures *f = measured(w);
             touched |= f->contacts > 0;
-            worst = fmax(worst, fabs(f->energy.error));
+            worst = largest(worst, f->energy.error);
             lost = f->energy.friction;
         }
         check(touched && lost > 1e-5);

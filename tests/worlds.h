@@ -207,6 +207,12 @@ static inline dem_vec3 spin_before(const dem_world *w, size_t body)
     return v3(m[3], m[4], m[5]);
 }
 
+/// The larger size; what is no number stays none, which fmax would forget.
+static inline double largest(double worst, double x)
+{
+    return fabs(x) <= worst ? worst : fabs(x);
+}
+
 /// The angle between two orientations [rad].
 static inline double angle_between(dem_quat a, dem_quat b)
 {

@@ -34,17 +34,21 @@ DEM_INLINE wide jkr_parting(wide k, wide *overlap)
     return s;
 }
 
-/// The largest s of s^4 - k s = `overlap` by Newton's method, which falls to it from above. Below the overlap at which
-/// they part there is none; what comes back is of no use then.
+/// The largest s of s^4 - k s = `overlap` by Newton's method, which falls to it from above; where they have parted, the s
+/// at which they did.
 DEM_INLINE wide jkr_stretch(wide k, wide overlap)
 {
     enum { MOST = 60 };
-    wide zero = wide_all(0), s = wide_all(1 + 1e-6) * cube_root(k) + wide_sqrt(wide_sqrt(wide_max(overlap, zero)));
+    wide zero = wide_all(0), end, least = jkr_parting(k, &end);
+    // k^(1/3) and a little more
+    wide s = wide_fma(wide_all(1.5874027), least, wide_sqrt(wide_sqrt(wide_max(overlap, zero))));
+    wide_mask holds = wide_less(end, overlap);
+    s = wide_select(holds, s, least);
     for (int i = 0; i < MOST; i++) {
         wide cube = s * s * s, slope = wide_fms(wide_all(4), cube, k);
         wide next = s - (s * (cube - k) - overlap) / slope;
         // a lane that has arrived stays as it is, so that it does not depend on the others
-        wide_mask falls = wide_and(wide_less(zero, slope), wide_less(next, s));
+        wide_mask falls = wide_and(holds, wide_and(wide_less(zero, slope), wide_less(next, s)));
         if (!wide_bits(falls))
             break;
         s = wide_select(falls, next, s);

@@ -65,7 +65,8 @@ DEM_INLINE wide normal_grip(const dem_features f, const normal_law *n)
 DEM_INLINE wide radius_before(const dem_features f, const normal_law *n, wide reduced, wide overlap, wide before)
 {
     if (f.jkr)
-        return wide_max(wide_fma(n->spread, before - overlap, n->radius), wide_all(0));
+        // by its slope, which has no bound where surfaces part
+        return wide_max(wide_min(wide_fma(n->spread, before - overlap, n->radius), n->radius + n->radius), wide_all(0));
     return wide_sqrt(reduced * wide_max(before, wide_all(0)));
 }
 

@@ -42,7 +42,7 @@ DEM_INLINE wide angle_kept(wide old_stiffness, wide stiffness)
 }
 
 DEM_INLINE void roll_spring(const dem_features f, const wide *law, const normal_law *n, const turning_state *s,
-                            wide3 rate, wide step, turning_law *t)
+                            wide3 rate, wide step, wide_mask on, turning_law *t)
 {
     wide ratio = law[LAW_ROLL_RATIO] * (s->reduced * s->reduced), zero = wide_all(0);
     wide stiffness = wide_fma(ratio, n->stiffness, law[LAW_ROLL_STIFFNESS]), old = stiffness;
@@ -56,8 +56,9 @@ DEM_INLINE void roll_spring(const dem_features f, const wide *law, const normal_
     wide size2 = dot3(moment, moment), cap = law[LAW_ROLL_CAP] * (s->reduced * normal_grip(f, n));
     wide_mask slides = wide_less(cap * cap, size2);
     wide part = wide_select(slides, cap * wide_rsqrt(size2), wide_all(1));
-    moment = scale3(moment, part);
-    t->roll = scale3(angle, part);
+    // a contact that ends lets go of what its springs hold
+    moment = or_zero3(on, scale3(moment, part));
+    t->roll = or_zero3(on, scale3(angle, part));
     t->held = stiffness * dot3(t->roll, t->roll);
     if (f.ledger) {
         wide3 both = along3(moment, old, start);
@@ -71,14 +72,14 @@ DEM_INLINE void roll_spring(const dem_features f, const wide *law, const normal_
 }
 
 DEM_INLINE void twist_spring(const dem_features f, const wide *law, const normal_law *n, const turning_state *s,
-                             wide rate, wide step, turning_law *t)
+                             wide rate, wide step, wide_mask on, turning_law *t)
 {
     wide zero = wide_all(0), radius2 = s->patch * s->patch;
     wide stiffness = law[LAW_TWIST_RATIO] * s->slide * radius2;
     wide old = law[LAW_TWIST_RATIO] * s->slide_before * (s->patch_before * s->patch_before);
     wide start = s->twist, angle = wide_fma(s->step, rate, start * angle_kept(old, stiffness));
     wide cap = law[LAW_TWIST_CAP] * (s->patch * normal_grip(f, n));
-    wide spring = wide_max(zero - cap, wide_min(cap, stiffness * angle));
+    wide spring = wide_or_zero(on, wide_max(zero - cap, wide_min(cap, stiffness * angle)));
     wide damping = law[LAW_TWIST_RATIO] * s->slide_damping * radius2;
     wide moment = wide_max(zero - cap, wide_min(cap, wide_fma(damping, rate, spring)));
     t->twist = wide_or_zero(wide_less(zero, stiffness), spring / stiffness);
@@ -100,9 +101,9 @@ DEM_INLINE turning_law turning(const dem_features f, const wide *law, const norm
     turning_law t = {
         .moment = none, .roll = none, .twist = zero, .drag = none, .lost = zero, .held = zero, .strain = zero};
     if (f.rolling)
-        roll_spring(f, law, n, s, roll, step, &t);
+        roll_spring(f, law, n, s, roll, step, on, &t);
     if (f.twisting)
-        twist_spring(f, law, n, s, twist, step, &t);
+        twist_spring(f, law, n, s, twist, step, on, &t);
     wide hold = s->reduced * normal_grip(f, n);
     if (f.roll_constant) {
         wide size2 = dot3(roll, roll), moment = law[LAW_ROLL_CONSTANT] * hold * wide_rsqrt(size2);
@@ -112,10 +113,7 @@ DEM_INLINE turning_law turning(const dem_features f, const wide *law, const norm
         t.drag = along3(t.drag, law[LAW_TWIST_CONSTANT] * hold * sign_of(twist), s->n);
     t.moment = or_zero3(on, (wide3){t.moment.x + t.drag.x, t.moment.y + t.drag.y, t.moment.z + t.drag.z});
     t.drag = or_zero3(on, t.drag);
-    t.roll = or_zero3(on, t.roll);
-    t.twist = wide_or_zero(on, t.twist);
     t.strain = wide_or_zero(on, t.strain);
-    t.held = wide_or_zero(on, t.held);
     return t;
 }
 
