@@ -269,7 +269,7 @@ DEM_INLINE void contact_law(const dem_features f, const dem_rows *rows, const de
         force = scale3(force, weight);
         loss = (contact_loss){loss.friction * weight, loss.viscous * weight};
     }
-    dem_contact_record *records = job->records + (at - g - job->begin);
+    dem_contact_record *records = record ? job->records + (at - g - job->begin) : NULL;
     if (record)
         put_records(f, batch, g, &normal, net, pulled, &force, &spring, slide, mass, weight, on, records);
     wide power = zero;  // of a moving wall
