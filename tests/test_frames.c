@@ -5,7 +5,6 @@
 #include "out/frames.h"
 #include "out/glyph.h"
 
-static dem_clump *clumps[VIEW_SHAPES];
 
 static dem_frames_def frames_def(const char *directory, double resume, size_t walls)
 {
@@ -241,19 +240,6 @@ static void what_cannot_be_written_is_said(void **state)
     dem_frames_close(NULL);
 }
 
-static int begin(void **state)
-{
-    view_clumps(clumps);
-    return make_folder(state);
-}
-
-static int end(void **state)
-{
-    for (int i = 0; i < VIEW_SHAPES; i++)
-        dem_clump_destroy(clumps[i]);
-    return remove_folder(state);
-}
-
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -264,5 +250,5 @@ int main(void)
         cmocka_unit_test(a_new_run_leaves_no_frame_of_an_earlier_one),
         cmocka_unit_test(what_cannot_be_written_is_said),
     };
-    return cmocka_run_group_tests(tests, begin, end);
+    return cmocka_run_group_tests(tests, begin_views, end_views);
 }

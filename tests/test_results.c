@@ -17,7 +17,6 @@ static const char SCENE[] =
     "\"translate\": {\"velocity\": [0, 0, 3]}, \"rotate\": {\"axis\": [0, 0, 1], \"through\": [1, 0, 0],"
     " \"rate\": 0.5}}}}}}";
 
-static dem_clump *clumps[VIEW_SHAPES];
 
 static void put_text(const char *path, const char *text)
 {
@@ -202,19 +201,6 @@ static void frames_that_do_not_fit_are_refused(void **state)
     refused_with("mass", &(dem_vtp_array){"mass", DEM_VTP_INT32, 1, templates}, "holds no mass");
 }
 
-static int begin(void **state)
-{
-    view_clumps(clumps);
-    return make_folder(state);
-}
-
-static int end(void **state)
-{
-    for (int i = 0; i < VIEW_SHAPES; i++)
-        dem_clump_destroy(clumps[i]);
-    return remove_folder(state);
-}
-
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -224,5 +210,5 @@ int main(void)
         cmocka_unit_test(the_frame_of_a_time_is_the_nearest_one),
         cmocka_unit_test(frames_that_do_not_fit_are_refused),
     };
-    return cmocka_run_group_tests(tests, begin, end);
+    return cmocka_run_group_tests(tests, begin_views, end_views);
 }

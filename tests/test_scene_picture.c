@@ -6,7 +6,6 @@
 
 enum { WIDTH = 240, HEIGHT = 200 };
 
-static dem_clump *clumps[VIEW_SHAPES];
 
 // two bodies side by side: a ball of shape 0 to the left, one of twice the size to the right, half a unit below
 typedef struct pair {
@@ -557,19 +556,6 @@ static void the_picture_is_a_png_file(void **state)
     check(dem_picture_bodies(NULL, &p.view, shapes, VIEW_SHAPES, &o, in_folder("b.png"), &error) == DEM_USAGE);
 }
 
-static int begin(void **state)
-{
-    view_clumps(clumps);
-    return make_folder(state);
-}
-
-static int end(void **state)
-{
-    for (int i = 0; i < VIEW_SHAPES; i++)
-        dem_clump_destroy(clumps[i]);
-    return remove_folder(state);
-}
-
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -592,5 +578,5 @@ int main(void)
         cmocka_unit_test(nothing_is_a_picture_too),
         cmocka_unit_test(the_picture_is_a_png_file),
     };
-    return cmocka_run_group_tests(tests, begin, end);
+    return cmocka_run_group_tests(tests, begin_views, end_views);
 }

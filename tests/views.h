@@ -3,6 +3,7 @@
 #define DEM_TESTS_VIEWS_H
 
 #include "clumps.h"
+#include "folder.h"
 
 #include "base/random.h"
 #include "math/quat.h"
@@ -76,6 +77,22 @@ static inline void view_walls(dem_wall_view walls[VIEW_WALLS], double time)
                                    .force = {i + time, 0.1, -i},
                                    .moment = {0, time, i / 3.0},
                                    .contacts = (size_t)i};
+}
+
+static dem_clump *clumps[VIEW_SHAPES];
+
+/// Give them to cmocka_run_group_tests: the clumps, and a folder.
+static inline int begin_views(void **state)
+{
+    view_clumps(clumps);
+    return make_folder(state);
+}
+
+static inline int end_views(void **state)
+{
+    for (int i = 0; i < VIEW_SHAPES; i++)
+        dem_clump_destroy(clumps[i]);
+    return remove_folder(state);
 }
 
 #endif

@@ -110,7 +110,7 @@ DEM_INLINE bool damped(const dem_features f)
 }
 DEM_INLINE bool turns(const dem_features f)
 {
-    return f.rolling || f.roll_constant || f.twisting || f.twist_constant;
+    return features_turning(f);
 }
 DEM_INLINE bool adheres(const dem_features f)
 {

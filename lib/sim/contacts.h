@@ -29,9 +29,9 @@
     X(double, roll[2], "rad", f->rolling, "angle of the rolling spring, z")                                            \
     X(double, twist, "rad", f->twisting, "angle of the twisting spring")                                               \
     X(double, attached, "-", f->jkr, "whether the surfaces hold on to each other")                                     \
-    X(double, drag[0], "N m", f->ledger && features_turning(f), "moment not of springs in the last step, x")           \
-    X(double, drag[1], "N m", f->ledger && features_turning(f), "moment not of springs, y")                            \
-    X(double, drag[2], "N m", f->ledger && features_turning(f), "moment not of springs, z")                            \
+    X(double, drag[0], "N m", f->ledger && features_turning(*f), "moment not of springs in the last step, x")          \
+    X(double, drag[1], "N m", f->ledger && features_turning(*f), "moment not of springs, y")                           \
+    X(double, drag[2], "N m", f->ledger && features_turning(*f), "moment not of springs, z")                           \
     X(double, loss, "N", f->ledger && (f->rate || f->restitution), "damped force of the last step")                    \
     X(double, weight, "-", f->weighted, "share of the force that counts")                                              \
     X(double, geometry[0], "-", mesh, "normal, x")                                                                     \

@@ -40,9 +40,9 @@ typedef struct dem_features {
 } dem_features;
 
 /// Whether contacts have moments of their own.
-static inline bool features_turning(const dem_features *f)
+static inline bool features_turning(dem_features f)
 {
-    return f->rolling || f->roll_constant || f->twisting || f->twist_constant;
+    return f.rolling || f.roll_constant || f.twisting || f.twist_constant;
 }
 
 /// The numbers of one law, a row of 32.

@@ -348,7 +348,7 @@ static void balance(dem_world *w)
     w->views.most_energy = fmax(w->views.most_energy, most);
     double off = now + gone - e->start;
     e->error = NAN;
-    if (w->ledger || !(w->laws.damped || w->features.jkr || w->features.friction || features_turning(&w->features)))
+    if (w->ledger || !(w->laws.damped || w->features.jkr || w->features.friction || features_turning(w->features)))
         e->error = w->views.most_energy > 0 ? off / w->views.most_energy : 0;
 }
 

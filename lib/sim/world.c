@@ -58,7 +58,7 @@ static void set_features(dem_world *w, const dem_body_def *defs, size_t count)
     dem_features *f = &w->features;
     *f = w->laws.needs;
     f->watch = !(w->time_def.step > 0);
-    f->ledger = w->ledger && (w->laws.damped || f->jkr || f->friction || features_turning(f) || w->walls.move);
+    f->ledger = w->ledger && (w->laws.damped || f->jkr || f->friction || features_turning(*f) || w->walls.move);
     f->periodic = w->periodic;
     f->moving = w->walls.move;
     f->weighted = w->multiple != DEM_MULTIPLE_SUM;
