@@ -161,6 +161,18 @@ dem_status dem_file_write_buffer(const char *path, dem_buffer *buffer, dem_error
     return status;
 }
 
+bool dem_folder_exists(const char *path)
+{
+    struct stat about;
+    return stat(path, &about) == 0 && S_ISDIR(about.st_mode);
+}
+
+bool dem_folder_is_meant(const char *path)
+{
+    size_t length = strlen(path);
+    return (length && path[length - 1] == '/') || dem_folder_exists(path);
+}
+
 dem_status dem_folder_create(const char *path, dem_error *error)
 {
     char *part = strdup(path);
