@@ -27,6 +27,7 @@ typedef struct runner {
     dem_run_result *result;
     dem_world *w;
     dem_frames *frames;
+    dem_file_queue *queue;  // of the frames
     dem_series *series;
     dem_network *network;
     const dem_clump **clumps;  // of the shapes, as the world runs them
@@ -80,6 +81,8 @@ static dem_status write_checkpoint(runner *r, dem_error *error)
 {
     void *bytes;
     size_t size;
+    // a checkpoint counts the frames that are there
+    DEM_TRY(dem_file_queue_wait(r->queue, error));
     DEM_TRY(dem_world_save(r->w, &bytes, &size, error));
     dem_checkpoint c = {.title = r->scene->title,
                         .time = dem_world_time(r->w),
@@ -297,8 +300,10 @@ static dem_status open_outputs(runner *r, double resume, dem_error *error)
             return dem_fail_memory(error);
         for (uint32_t i = 0; i < r->scene->shape_count; i++)
             r->clumps[i] = dem_world_clump(r->w, i);
+        DEM_TRY(dem_file_queue_create(&r->queue, error));
         dem_frames_def def = {o->directory,    r->scene->shapes,     r->clumps,        r->scene->shape_count,
-                              r->scene->walls, r->scene->wall_count, r->scene->domain, resume};
+                              r->scene->walls, r->scene->wall_count, r->scene->domain, r->queue,
+                              resume};
         DEM_TRY(dem_frames_open(&def, &r->frames, error));
     }
     if (o->series > 0)
@@ -323,6 +328,7 @@ static dem_status finish(runner *r, dem_error *error)
     dem_body_view bodies = dem_world_bodies(r->w);
     DEM_TRY(
         dem_final_write(r->ctx, r->scene->output.directory, r->scene->shapes, r->scene->shape_count, &bodies, error));
+    DEM_TRY(dem_file_queue_wait(r->queue, error));
     r->output_seconds += dem_clock() - begin;
     return DEM_OK;
 }
@@ -393,6 +399,7 @@ dem_status dem_run(const dem_ctx *ctx, const dem_scene *scene, const dem_run_opt
         status = status == DEM_OK ? concluded : status;
     }
     dem_frames_close(r.frames);
+    dem_file_queue_destroy(r.queue);
     dem_series_close(r.series);
     dem_network_close(r.network);
     free(r.clumps);

@@ -4,6 +4,7 @@
 
 #include "math/vec.h"
 #include "sim/scene.h"
+#include "sim/schemes.h"
 
 static void put_vec(dem_json_writer *w, const char *key, dem_vec3 v)
 {
@@ -467,8 +468,8 @@ static dem_status put_scene(dem_json_writer *w, const dem_scene *scene, dem_erro
     DEM_TRY(put_walls(w, scene, error));
     put_damping(w, &scene->damping);
     dem_json_open_object(w, "integrator");
-    dem_json_put_string(w, "translation", "central");
-    dem_json_put_string(w, "rotation", "lsym");
+    dem_json_put_string(w, "translation", dem_translations[scene->integrator.translation].name);
+    dem_json_put_string(w, "rotation", dem_rotations[scene->integrator.rotation].name);
     dem_json_close(w, '}');
     dem_json_put_string(w, "contacts_between_clumps", multiples[scene->multiple]);
     put_measures(w, scene);
