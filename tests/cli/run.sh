@@ -156,6 +156,6 @@ head -1 net/series.csv | grep -q ',foot_stress_xx_Pa,.*,foot_void_ratio,' || fai
 cut -d, -f1-20 net/series.csv | cmp -s - <(cut -d, -f1-20 straight/series.csv) || fail "measuring changes the run"
 run 0 dem-run box.json --explain -D 'measures={"all": {"whole": true}}'
 prints '^measures: stress, fabric and packing of 1 region with every row of the series, nothing in a step$'
-run 2 dem-run box.json --check -D 'measures={"a": {"ball": {"centre": [0, 0, 0], "radius": -1}}}'
+run 3 dem-run box.json --check -D 'measures={"a": {"ball": {"centre": [0, 0, 0], "radius": -1}}}'
 mentions 'must be above 0'
 finish
