@@ -105,8 +105,8 @@ typedef struct dem_shape_def {
     uint32_t material;
 } dem_shape_def;
 
-/// What of a body's motion is held, as bits: components in the axes of space that stay 0, or its velocity and spin, which
-/// stay what they are at the start. A fixed body is one with both held at 0. Work of what holds it is work in the ledger.
+/// What of a body's motion is held, as bits: components in the axes of space that stay 0, or its velocity and spin,
+/// which stay what they are at the start. A fixed body has both held at 0. What holds it does work (dem_energy).
 typedef enum dem_hold {
     DEM_LOCK_X = 1,
     DEM_LOCK_Y = 2,
