@@ -75,6 +75,9 @@ static const unit units[] = {
     {"kg m^2", DEM_DIMENSION_INERTIA, 1},
     {"1/s", DEM_DIMENSION_RATE, 1},
     {"Hz", DEM_DIMENSION_RATE, 1},
+    {"Pa s", DEM_DIMENSION_VISCOSITY, 1},
+    {"mPa s", DEM_DIMENSION_VISCOSITY, 1e-3},
+    {"cP", DEM_DIMENSION_VISCOSITY, 1e-3},
 };
 enum { UNIT_COUNT = sizeof units / sizeof *units };
 
@@ -93,6 +96,7 @@ static const struct {
     [DEM_DIMENSION_MASS] = {"a mass", "5 g"},
     [DEM_DIMENSION_INERTIA] = {"a moment of inertia", "2e-9 kg m2"},
     [DEM_DIMENSION_RATE] = {"a rate", "100 1/s"},
+    [DEM_DIMENSION_VISCOSITY] = {"a viscosity", "1 mPa s"},
     [DEM_DIMENSION_NONE] = {"a number", "0.5"},
 };
 

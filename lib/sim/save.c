@@ -63,7 +63,7 @@ static uint64_t hash_constants(const dem_world *w)
         w->domain.high,
         {w->damping.local, w->damping.viscous, w->damping.local_frame + 2 * w->damping.exclude_gravity}};
     h = hash_bytes(h, loads, sizeof loads);
-    double numbers[9] = {w->time_def.step,
+    double numbers[15] = {w->time_def.step,
                          w->multiple,
                          w->domain.periodic[0],
                          w->domain.periodic[1],
@@ -71,7 +71,13 @@ static uint64_t hash_constants(const dem_world *w)
                          w->integrator.translation,
                          w->integrator.rotation,
                          w->held,
-                         w->kept};
+                         w->kept,
+                         w->damping.drag.density,
+                         w->damping.drag.viscosity,
+                         w->damping.drag.velocity.x,
+                         w->damping.drag.velocity.y,
+                         w->damping.drag.velocity.z,
+                         w->damping.drag.buoyancy};
     return hash_bytes(h, numbers, sizeof numbers);
 }
 

@@ -208,11 +208,21 @@ typedef enum dem_local_frame {
     DEM_LOCAL_VECTOR,  ///< force and moment as vectors against the velocity
 } dem_local_frame;
 
+/// A fluid that flows evenly and drags each body as the sphere of its volume (Schiller & Naumann 1933). Density and
+/// viscosity 0: there is none.
+typedef struct dem_drag_def {
+    double density;     ///< [kg/m^3]
+    double viscosity;   ///< dynamic [Pa s]
+    dem_vec3 velocity;  ///< [m/s]
+    bool buoyancy;      ///< bodies weigh less by the fluid they displace
+} dem_drag_def;
+
 typedef struct dem_damping_def {
     double local;  ///< Cundall's alpha, 0..1 [-]
     dem_local_frame local_frame;
     bool exclude_gravity;  ///< local damping acts on the contact forces only
     double viscous;        ///< F = -c m v, T = -c L [1/s]
+    dem_drag_def drag;
 } dem_damping_def;
 
 /// How positions follow from forces, one evaluation of the forces a step (PHYSICS 2.1).
