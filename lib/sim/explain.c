@@ -160,6 +160,11 @@ dem_status dem_world_explain(dem_world *w, char **text, dem_error *error)
         put_contacts(&out, w, DEM_FORM_MESH, "with a mesh");
     put_kernel(&out, w);
     put_passes(&out, w);
+    size_t regions;
+    dem_regions_views(w->regions, &regions);
+    if (regions)
+        dem_buffer_print(&out, "measures: stress, fabric and packing of %zu region%s with every row of the series, nothing in a step\n",
+                         regions, regions == 1 ? "" : "s");
     dem_status status = put_step(&out, w, error);
     if (status == DEM_OK && out.failed)
         status = dem_fail_memory(error);

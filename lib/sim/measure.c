@@ -380,6 +380,10 @@ dem_status dem_world_measure(dem_world *w, dem_error *error)
         return dem_fail_memory(error);
     gather(w);
     balance(w);
+    if (w->regions) {
+        dem_body_view bodies = dem_world_bodies(w);
+        dem_regions_measure(w->regions, &bodies, v->contacts, v->contact_count);
+    }
     v->figures.largest_overlap_ratio = fmax(largest_overlap(w), v->figures.overlap_ratio);
     w->clocks[DEM_PASS_MEASURE].seconds += dem_clock() - begin;
     return DEM_OK;
@@ -407,4 +411,9 @@ const dem_wall_view *dem_world_walls(const dem_world *w, size_t *count)
 {
     *count = w->walls.count;
     return w->views.walls;
+}
+
+const dem_measure_view *dem_world_measures(const dem_world *w, size_t *count)
+{
+    return dem_regions_views(w->regions, count);
 }

@@ -158,6 +158,8 @@ static const dem_field output_table[] = {
      .range = DEM_RANGE_FROM_0},
     {"series", dem_field_quantity, .at = offsetof(dem_output_def, series), .dimension = DEM_DIMENSION_TIME,
      .range = DEM_RANGE_FROM_0},
+    {"contacts", dem_field_quantity, .at = offsetof(dem_output_def, contacts), .dimension = DEM_DIMENSION_TIME,
+     .range = DEM_RANGE_FROM_0},
     {"checkpoint", read_checkpoint, .dimension = DEM_DIMENSION_TIME, .range = DEM_RANGE_FROM_0},
     {"energy", dem_field_flag, .at = offsetof(dem_output_def, energy)},
 };
@@ -204,6 +206,7 @@ static const dem_field scene_table[] = {
     {"damping", dem_field_object, .at = offsetof(dem_scene, damping), .fields = &damping_fields},
     {"integrator", dem_field_object, .at = offsetof(dem_scene, integrator), .fields = &integrator_fields},
     {"contacts_between_clumps", dem_field_choice, .at = offsetof(dem_scene, multiple), .choices = multiples},
+    {"measures", dem_section_measures, .fields = &dem_measure_fields},
     {"output", dem_field_object, .at = offsetof(dem_scene, output), .fields = &output_fields},
 };
 const dem_fields dem_scene_fields = DEM_FIELDS(scene_table);
@@ -236,6 +239,7 @@ dem_status dem_scene_finish(dem_scene_reader *r, const dem_scene_value *root)
 {
     dem_scene *scene = r->scene;
     DEM_TRY(check_laws(r, root));
+    DEM_TRY(dem_scene_check_measures(r, root));
     scene->time.safety = dem_scene_safety(scene);
     return DEM_OK;  // the output's directory is left alone: results go to where one works, not to where scenes are kept
 }

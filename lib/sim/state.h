@@ -13,6 +13,7 @@
 #include "sim/kernels.h"
 #include "sim/laws.h"
 #include "sim/mesh_touch.h"
+#include "sim/region.h"
 #include "sim/template.h"
 #include "sim/walls.h"
 
@@ -194,6 +195,7 @@ struct dem_world {
     dem_push *pushes;
     size_t push_count, push_capacity;
     dem_views views;
+    dem_regions *regions;  ///< NULL: nothing is measured by region
     dem_pass_time clocks[DEM_PASSES];
     uint64_t searches;  ///< for pairs, since the world was made
     double warned[8];

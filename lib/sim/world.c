@@ -146,6 +146,7 @@ static dem_status make_state(dem_world *w, const dem_scene *scene, dem_error *er
     if (w->periodic)
         DEM_TRY(dem_broad_images(w, error));
     DEM_TRY(make_lists(w, error));
+    DEM_TRY(dem_regions_create(scene, w->clumps, &w->regions, error));
     for (size_t i = 0; i < count; i++)
         w->asked[i] = (uint32_t)i;
     w->asked_count = count;
@@ -226,6 +227,7 @@ void dem_world_destroy(dem_world *w)
     }
     dem_team_destroy(w->team);
     dem_views_release(&w->views);
+    dem_regions_release(w->regions);
     void *all[] = {w->clumps,         w->shape_names, w->shifts,     w->mesh_touches, w->tallies,
                    w->motion_tallies, w->asked,       w->part_asked, w->parts,        w->fresh,
                    w->candidates,     w->pushes,      w->strained,   w->part_strained};

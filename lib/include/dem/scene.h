@@ -237,10 +237,27 @@ typedef struct dem_time_def {
     double contact_steps;  ///< least number of automatic steps in the shortest contact [-]; 0: stability alone
 } dem_time_def;
 
+typedef enum dem_region {
+    DEM_REGION_WHOLE,  ///< the domain; where it is open, the box that holds all spheres
+    DEM_REGION_BOX,
+    DEM_REGION_BALL,
+} dem_region;
+
+/// A region whose stress, fabric and packing are measured whenever the world is; it does not move.
+typedef struct dem_measure_def {
+    const char *name;
+    dem_region region;
+    dem_vec3 low, high;  ///< of a box [m]
+    dem_vec3 centre;     ///< of a ball [m]
+    double radius;       ///< of a ball [m]
+    bool kinetic;        ///< the stress with that of the bodies' motion about their mean
+} dem_measure_def;
+
 typedef struct dem_output_def {
     const char *directory;
     double frames;         ///< interval [s]; 0: none
     double series;         ///< interval [s]; 0: none
+    double contacts;       ///< interval of the network of contacts [s]; 0: none
     double checkpoint;     ///< interval [s]; 0: none
     bool checkpoint_wall;  ///< the interval is of the clock on the wall
     bool energy;           ///< keep the energy ledger
@@ -264,6 +281,8 @@ typedef struct dem_scene {
     dem_damping_def damping;
     dem_integrator_def integrator;
     dem_multiple multiple;
+    const dem_measure_def *measures;
+    size_t measure_count;
     dem_output_def output;
     struct dem_scene_owner *owner;
 } dem_scene;
