@@ -78,6 +78,15 @@ static const unit units[] = {
     {"Pa s", DEM_DIMENSION_VISCOSITY, 1},
     {"mPa s", DEM_DIMENSION_VISCOSITY, 1e-3},
     {"cP", DEM_DIMENSION_VISCOSITY, 1e-3},
+    {"N", DEM_DIMENSION_FORCE, 1},
+    {"kN", DEM_DIMENSION_FORCE, 1e3},
+    {"MN", DEM_DIMENSION_FORCE, 1e6},
+    {"mN", DEM_DIMENSION_FORCE, 1e-3},
+    {"uN", DEM_DIMENSION_FORCE, 1e-6},
+    {"µN", DEM_DIMENSION_FORCE, 1e-6},
+    {"nN", DEM_DIMENSION_FORCE, 1e-9},
+    {"s/m", DEM_DIMENSION_SLOWNESS, 1},
+    {"s/mm", DEM_DIMENSION_SLOWNESS, 1e3},
 };
 enum { UNIT_COUNT = sizeof units / sizeof *units };
 
@@ -97,6 +106,8 @@ static const struct {
     [DEM_DIMENSION_INERTIA] = {"a moment of inertia", "2e-9 kg m2"},
     [DEM_DIMENSION_RATE] = {"a rate", "100 1/s"},
     [DEM_DIMENSION_VISCOSITY] = {"a viscosity", "1 mPa s"},
+    [DEM_DIMENSION_FORCE] = {"a force", "5 kN"},
+    [DEM_DIMENSION_SLOWNESS] = {"an inverse velocity", "500 s/m"},
     [DEM_DIMENSION_NONE] = {"a number", "0.5"},
 };
 

@@ -90,6 +90,7 @@ typedef struct dem_energy {
     double elastic;              ///< in the contacts
     double friction;             ///< dissipated by sliding
     double viscous;              ///< dissipated by the dashpots of contacts
+    double broken;               ///< let go by bonds that broke
     double local;                ///< dissipated by local damping
     double drag;                 ///< taken from the bodies by global viscous damping and by the drag of a fluid
     double work;                 ///< done by moving walls, pushes, and bodies whose motion is given
