@@ -201,7 +201,16 @@ typedef struct dem_damping_def {
 } dem_damping_def;
 
 /// How several contacts of one pair of bodies add up.
-typedef enum dem_multiple { DEM_MULTIPLE_SUM, DEM_MULTIPLE_MEAN, DEM_MULTIPLE_MERGE } dem_multiple;
+typedef enum dem_multiple {
+    DEM_MULTIPLE_SUM,
+    DEM_MULTIPLE_MEAN,
+    DEM_MULTIPLE_MERGE,
+    DEM_MULTIPLE_SOFT,  ///< one contact by a soft maximum of the overlaps, whatever the number of spheres
+} dem_multiple;
+
+typedef struct dem_soft_def {
+    double tau;  ///< length of the soft maximum, .2 to .3 of the typical largest overlap [m]; 0: by likely impacts
+} dem_soft_def;
 
 typedef struct dem_time_def {
     double end;            ///< [s]; NAN: not given
@@ -236,6 +245,7 @@ typedef struct dem_scene {
     size_t wall_count;
     dem_damping_def damping;
     dem_multiple multiple;
+    dem_soft_def soft;
     dem_output_def output;
     struct dem_scene_owner *owner;
 } dem_scene;
