@@ -49,7 +49,7 @@ static void the_plain_sections_are_read(void **state)
         "'domain': {'min': [0, '-1 cm', null], 'max': [1, 2, null], 'periodic': [true, false, false],\n"
         " 'leaving': 'ignore'}, 'inlets': {}, 'bonds': [],\n"
         "'damping': {'local': 0.7, 'local_frame': 'vector', 'exclude_gravity': true, 'viscous': '3 1/s'},\n"
-        "'integrator': {'translation': 'central', 'rotation': 'lsym'}, 'contacts_between_clumps': 'merge',\n"
+        "'integrator': {'translation': 'taylor', 'rotation': 'no-squish'}, 'contacts_between_clumps': 'merge',\n"
         "'output': {'directory': 'here', 'frames': '5 ms', 'series': 1e-3, 'checkpoint': '2 min', 'energy': false}}");
     assert_string_equal(s.title, "sand");
     check_vec(s.gravity, v3(0, -9.81, -1), 2e-15);
@@ -59,6 +59,7 @@ static void the_plain_sections_are_read(void **state)
     check(s.domain.periodic[0] && !s.domain.periodic[1] && s.domain.leaving == DEM_LEAVING_IGNORE);
     check(s.damping.local == 0.7 && s.damping.local_frame == DEM_LOCAL_VECTOR && s.damping.exclude_gravity);
     check(s.damping.viscous == 3 && s.multiple == DEM_MULTIPLE_MERGE);
+    check(s.integrator.translation == DEM_TRANSLATION_TAYLOR && s.integrator.rotation == DEM_ROTATION_NO_SQUISH);
     assert_string_equal(s.output.directory, "here");
     dem_scene soft = scene_of("{'schema': 'dem-scene/1', 'contacts_between_clumps': 'soft', 'soft': {'tau': '3 um'}}");
     check(soft.multiple == DEM_MULTIPLE_SOFT && soft.soft.tau == 3e-6 && s.soft.tau == 0);

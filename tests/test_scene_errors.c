@@ -379,8 +379,6 @@ static void what_is_not_built_is_never_ignored(void **state)
         {S "'bonds': {'a': {}}}", 2, "~is not built yet"},
         {S "'bonds': 5}", 2, "~is not built yet"},
         {S "'damping': {'drag': {}}}", 2, "~is not built yet"},
-        {S "'integrator': {'translation': 'velocity-verlet'}}", 2, "~is not built yet"},
-        {S "'integrator': {'rotation': 'no-squish'}}", 2, "~is not built yet"},
         {S "'integrator': {'rotation': 'lsim'}}", 2, "unknown rotation 'lsim' (column 28); did you mean 'lsym'?"},
     };
     CHECK_REFUSALS(cases);

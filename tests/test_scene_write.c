@@ -55,6 +55,7 @@ static void check_same_scene(const dem_scene *a, const dem_scene *b)
     assert_memory_equal(&a->domain, &b->domain, offsetof(dem_domain_def, periodic) + sizeof a->domain.periodic);
     check(a->domain.leaving == b->domain.leaving && a->multiple == b->multiple &&
           a->soft.tau == b->soft.tau);
+    assert_memory_equal(&a->integrator, &b->integrator, sizeof a->integrator);
     assert_memory_equal(&a->gravity, &b->gravity, sizeof a->gravity);
     for (size_t i = 0; i < a->shape_count; i++) {
         check(a->shapes[i].sphere_radius == b->shapes[i].sphere_radius &&

@@ -9,6 +9,7 @@
 #include "base/file.h"
 #include "base/memory.h"
 #include "clump_labels.h"
+#include "clump_outputs.h"
 #include "clump_report.h"
 #include "clump_scene.h"
 #include "clump_table.h"
@@ -221,17 +222,6 @@ static void sum_up(batch *b)
     dem_buffer_release(&text);
 }
 
-static int batch_status(const batch *b)
-{
-    if (cli_interrupted())
-        return DEM_INTERRUPTED;
-    if (b->status == DEM_NO_MEMORY && !b->several)
-        return DEM_FAILED;
-    if (b->status == DEM_UNAVAILABLE || (b->failed && b->several))
-        return DEM_BAD_INPUT;
-    return b->status == DEM_NO_MEMORY ? DEM_FAILED : (int)b->status;
-}
-
 // whether pictures can be made at all: better told before hours of packing than after each grain
 static dem_status try_picture(dem_error *error)
 {
@@ -271,5 +261,5 @@ int batch_run(const cli_tool *tool, const cli_common *common, const clump_inputs
     cli_end(&b.session);
     pthread_mutex_destroy(&b.lock);
     dem_buffer_release(&b.failures);
-    return batch_status(&b);
+    return outputs_status(b.status, b.failed && b.several);
 }

@@ -9,6 +9,7 @@
 #include "base/units.h"
 #include "clump/file.h"
 #include "clump/import.h"
+#include "clump_inputs.h"
 #include "clump_outputs.h"
 #include "clump_report.h"
 
@@ -95,13 +96,14 @@ static dem_status convert(const dem_ctx *ctx, conversion *c, const char *input, 
     return job_write(ctx, &c->job, r, options.mesh, error);
 }
 
-static void convert_file(const dem_ctx *ctx, conversion *c, const cli_texts *inputs, size_t at)
+static void convert_file(const dem_ctx *ctx, conversion *c, const clump_input *asked)
 {
-    job_result *r = &c->results.items[c->results.count++];
-    const char *input = inputs->items[at];
+    size_t at = c->results.count++;
+    job_result *r = &c->results.items[at];
+    const char *input = asked->path;
     dem_import import = {0};
     *r = (job_result){.input = input};
-    outputs_name(inputs, at, r->name);
+    snprintf(r->name, sizeof r->name, "%s", asked->name);
     r->status = convert(ctx, c, input, r, &import, &c->reports[at], &r->error);
     c->kinds[at] = import.format ? import.format : "";
     if (r->status != DEM_OK && !r->error.file[0])
@@ -256,11 +258,11 @@ static int tell(const cli_tool *tool, conversion *c, cli_session *session, bool 
 
 // ---- all files
 
-static int convert_files(const cli_tool *tool, conversion *c, const cli_texts *inputs, const char *table)
+static int convert_files(const cli_tool *tool, conversion *c, const clump_inputs *inputs, const char *table)
 {
     cli_session session;
     dem_error error;
-    bool several = inputs->count > 1;
+    dem_status worst = DEM_OK;
     int status = 0;
     cli_begin(&session, tool, &c->arguments->common);
     session.jobs = inputs->count;
@@ -273,16 +275,19 @@ static int convert_files(const cli_tool *tool, conversion *c, const cli_texts *i
         }
     }
     for (size_t i = 0; status == 0 && i < inputs->count && !cli_interrupted(); i++) {
-        dem_ctx ctx = cli_ctx(&session, strcmp(inputs->items[i], "-") ? inputs->items[i] : "standard input");
-        convert_file(&ctx, c, inputs, i);
-        if (c->results.items[i].status != DEM_OK)
+        const char *path = inputs->items[i].path;
+        dem_ctx ctx = cli_ctx(&session, strcmp(path, "-") ? path : "standard input");
+        convert_file(&ctx, c, &inputs->items[i]);
+        if (c->results.items[i].status != DEM_OK) {
+            worst = c->results.items[i].status;
             cli_session_error(&session, &c->results.items[i].error);
+        }
         cli_job_done(&session);
     }
     cli_end(&session);
     if (status == 0 && c->results.count)
-        status = tell(tool, c, &session, several, table);
-    return status == 0 ? outputs_status(&c->results, several) : status;
+        status = tell(tool, c, &session, inputs->several, table);
+    return status == 0 ? outputs_status(worst, worst != DEM_OK && inputs->several) : status;
 }
 
 static int check(const cli_tool *tool, const arguments *a, const cli_texts *inputs, conversion *c)
@@ -316,11 +321,11 @@ static int check(const cli_tool *tool, const arguments *a, const cli_texts *inpu
     return 0;
 }
 
-static int run(const cli_tool *tool, arguments *a, const cli_texts *inputs)
+static int run(const cli_tool *tool, arguments *a, const cli_texts *operands)
 {
     conversion c = {.arguments = a, .options = dem_import_defaults()};
     const char *table = NULL;
-    int status = check(tool, a, inputs, &c);
+    int status = check(tool, a, operands, &c);
     if (status)
         return status;
     c.options.unit_name = a->mesh_unit ? a->mesh_unit : a->unit ? a->unit : "m";
@@ -333,17 +338,21 @@ static int run(const cli_tool *tool, arguments *a, const cli_texts *inputs)
     if (status)
         return status;
     cli_texts files = {.items = calloc(a->outputs.count + 1, sizeof *files.items)};
-    c.results.items = calloc(inputs->count, sizeof *c.results.items);
-    c.reports = calloc(inputs->count, sizeof *c.reports);
-    c.kinds = calloc(inputs->count, sizeof *c.kinds);
-    if (!files.items || !c.results.items || !c.reports || !c.kinds)
+    c.results.items = calloc(operands->count, sizeof *c.results.items);
+    c.reports = calloc(operands->count, sizeof *c.reports);
+    c.kinds = calloc(operands->count, sizeof *c.kinds);
+    clump_inputs inputs;
+    dem_error error;
+    bool named = clump_inputs_files(operands, &inputs, &error) == DEM_OK;
+    if (!named || !files.items || !c.results.items || !c.reports || !c.kinds)
         status = cli_error(tool, &(dem_error){.code = DEM_NO_MEMORY, .text = "out of memory; convert fewer files"});
     else
-        status = outputs_sort(tool, &c.job, inputs->count > 1, &files, &table, NULL);
+        status = outputs_sort(tool, &c.job, inputs.several, &files, &table, NULL);
     if (status == 0)
-        status = convert_files(tool, &c, inputs, table);
+        status = convert_files(tool, &c, &inputs, table);
     job_results_release(&c.results);
     dem_mesh_free(&c.mesh);
+    clump_inputs_release(&inputs);
     free(files.items);
     free(c.reports);
     free(c.kinds);

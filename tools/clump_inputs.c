@@ -5,7 +5,6 @@
 #include <errno.h>
 #include <stdlib.h>
 #include <string.h>
-#include <sys/stat.h>
 
 #include "base/file.h"
 #include "base/memory.h"
@@ -47,12 +46,6 @@ static int by_bytes(const struct dirent **a, const struct dirent **b)
     return strcmp((*a)->d_name, (*b)->d_name);
 }
 
-static bool is_folder(const char *path)
-{
-    struct stat about;
-    return stat(path, &about) == 0 && S_ISDIR(about.st_mode);
-}
-
 static dem_status add_folder(clump_inputs *inputs, const char *folder, const clump_input_options *options, int depth,
                              dem_error *error)
 {
@@ -74,7 +67,7 @@ static dem_status add_folder(clump_inputs *inputs, const char *folder, const clu
         if (status != DEM_OK)
             continue;
         bool labels = dem_volume_is_name(path) || (options->raw && dem_file_has_suffix(path, "raw"));
-        if (is_folder(path)) {
+        if (dem_folder_exists(path)) {
             if (options->recursive && depth < DEEPEST)
                 status = add_folder(inputs, path, options, depth + 1, error);
         } else if (labels || (is_mesh_name(path) && !options->raw)) {
@@ -92,7 +85,7 @@ static dem_status add_path(clump_inputs *inputs, char *path, const clump_input_o
 {
     if (!path)
         return dem_fail_memory(error);
-    if (strcmp(path, "-") == 0 || !is_folder(path))
+    if (strcmp(path, "-") == 0 || !dem_folder_exists(path))
         return add_file(inputs, path, options->raw || dem_volume_is_file(path), error);
     size_t before = inputs->count;
     inputs->several = true;
@@ -201,6 +194,14 @@ dem_status clump_inputs_collect(const cli_texts *operands, const clump_input_opt
     if (status == DEM_OK && options->list)
         status = add_list(inputs, options, error);
     return status == DEM_OK ? name_all(inputs, error) : status;
+}
+
+dem_status clump_inputs_files(const cli_texts *operands, clump_inputs *inputs, dem_error *error)
+{
+    *inputs = (clump_inputs){.several = operands->count > 1};
+    for (size_t i = 0; i < operands->count; i++)
+        DEM_TRY(add_file(inputs, strdup(operands->items[i]), false, error));
+    return name_all(inputs, error);
 }
 
 void clump_inputs_release(clump_inputs *inputs)

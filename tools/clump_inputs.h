@@ -26,6 +26,8 @@ typedef struct clump_input_options {
 /// or list without meshes and where names cannot be read; DEM_NO_MEMORY.
 dem_status clump_inputs_collect(const cli_texts *operands, const clump_input_options *options, clump_inputs *inputs,
                                 dem_error *error);
+/// The operands as they are, each a file. Error: DEM_NO_MEMORY.
+dem_status clump_inputs_files(const cli_texts *operands, clump_inputs *inputs, dem_error *error);
 void clump_inputs_release(clump_inputs *inputs);
 
 #endif

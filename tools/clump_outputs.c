@@ -1,17 +1,9 @@
 #include "clump_outputs.h"
 
 #include <string.h>
-#include <sys/stat.h>
 
 #include "base/file.h"
 #include "base/memory.h"
-
-bool outputs_is_folder(const char *path)
-{
-    struct stat about;
-    size_t length = strlen(path);
-    return (length && path[length - 1] == '/') || (stat(path, &about) == 0 && S_ISDIR(about.st_mode));
-}
 
 static const char *format_names(char text[256])
 {
@@ -81,7 +73,7 @@ static int sort_one(const cli_tool *tool, job_options *o, bool several, const ch
 {
     const dem_exporter *exporter = dem_exporter_of_file(path);
     bool standard = strcmp(path, "-") == 0;
-    if (!standard && outputs_is_folder(path) && !(exporter && exporter->parts))
+    if (!standard && dem_folder_is_meant(path) && !(exporter && exporter->parts))
         o->folder = path;
     else if (!exporter && dem_file_has_suffix(path, "csv"))
         *table = path;
@@ -120,42 +112,11 @@ int outputs_sort(const cli_tool *tool, job_options *o, bool several, cli_texts *
     return 0;
 }
 
-// the length of a file's name without its suffix
-static int stem(const char *name)
+int outputs_status(dem_status worst, bool failed)
 {
-    const char *dot = strrchr(name, '.');
-    return (int)(dot && dot != name ? dot - name : (long)strlen(name));
-}
-
-static const char *name_of(const char *input)
-{
-    return strcmp(input, "-") ? dem_file_name(input) : "grain";
-}
-
-void outputs_name(const cli_texts *inputs, size_t at, char name[static 256])
-{
-    const char *own = name_of(inputs->items[at]);
-    int length = stem(own), same = 1;
-    for (size_t i = 0; i < at; i++) {
-        const char *other = name_of(inputs->items[i]);
-        same += stem(other) == length && strncmp(other, own, (size_t)length) == 0;
-    }
-    if (same > 1)
-        snprintf(name, 256, "%.*s_%d", length < 240 ? length : 240, own, same);
-    else
-        snprintf(name, 256, "%.*s", length, own);
-}
-
-int outputs_status(const job_results *results, bool several)
-{
-    int status = 0;
-    for (size_t i = 0; i < results->count; i++) {
-        int code = (int)results->items[i].status;
-        if (code == DEM_NO_MEMORY)
-            code = DEM_FAILED;
-        if (code == DEM_UNAVAILABLE || (code != 0 && several))
-            code = DEM_BAD_INPUT;
-        status = code ? code : status;
-    }
-    return cli_interrupted() ? DEM_INTERRUPTED : status;
+    if (cli_interrupted())
+        return DEM_INTERRUPTED;
+    if (worst == DEM_UNAVAILABLE || failed)
+        return DEM_BAD_INPUT;
+    return worst == DEM_NO_MEMORY ? DEM_FAILED : (int)worst;
 }

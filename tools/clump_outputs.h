@@ -13,14 +13,7 @@ int outputs_sort(const cli_tool *tool, job_options *o, bool several, cli_texts *
 /// folder. Before outputs_sort; 0 or the exit status.
 int outputs_exports(const cli_tool *tool, const char *list, job_options *o, cli_texts *formats);
 
-/// A folder that is there, or a name that ends in /.
-bool outputs_is_folder(const char *path);
-
-/// Base name of the outputs of an input: its own without folder and suffix, numbered where others before it have the
-/// same.
-void outputs_name(const cli_texts *inputs, size_t at, char name[static 256]);
-
-/// Of all results; of several, a failure of one is bad input.
-int outputs_status(const job_results *results, bool several);
+/// The exit status of what became of the grains at worst; `failed`: one of several has failed, which is bad input.
+int outputs_status(dem_status worst, bool failed);
 
 #endif

@@ -180,7 +180,7 @@ static int sort_sweep_outputs(const cli_tool *tool, job_options *job, bool sever
 {
     for (size_t i = 0; i < job->outputs.count; i++) {
         const char *path = job->outputs.items[i];
-        if (outputs_is_folder(path))
+        if (dem_folder_is_meant(path))
             job->folder = path;
         else if (several)
             return cli_wrong_usage(tool, "several grains cannot all go to '%s'; name a folder with -o DIR/", path);

@@ -1,6 +1,5 @@
 /// Makes irregular grain meshes on demand.
 #include <string.h>
-#include <sys/stat.h>
 #include <unistd.h>
 
 #include "base/file.h"
@@ -92,15 +91,12 @@ static int check_together(const cli_tool *tool, const settings *s, const dem_gra
 
 static int check_output(const cli_tool *tool, settings *s, dem_mesh_format *format)
 {
-    struct stat status;
     if (!s->output && (s->count || s->cells || s->siblings))
         return cli_wrong_usage(tool, "name the folder to write to, as in -o grains/");
     if (!s->output && isatty(STDOUT_FILENO))
         return cli_wrong_usage(tool, "name the file to write, as in -o grain.obj");
     s->output = s->output ? s->output : "-";
-    size_t length = strlen(s->output);
-    s->folder = s->count || s->cells || s->siblings || (length && s->output[length - 1] == '/') ||
-                (stat(s->output, &status) == 0 && S_ISDIR(status.st_mode));
+    s->folder = s->count || s->cells || s->siblings || dem_folder_is_meant(s->output);
     *format = (dem_mesh_format)s->format;
     if (s->folder) {
         if (strcmp(s->output, "-") == 0)

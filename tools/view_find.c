@@ -2,7 +2,6 @@
 #include <dirent.h>
 #include <stdlib.h>
 #include <string.h>
-#include <sys/stat.h>
 #include <unistd.h>
 
 #include "base/file.h"
@@ -150,11 +149,10 @@ static dem_status tell_apart(view_inputs *all, dem_error *error)
 
 dem_status view_find(const cli_texts *operands, view_inputs *all, dem_error *error)
 {
-    struct stat about;
     *all = (view_inputs){0};
     for (size_t i = 0; i < operands->count; i++) {
         const char *path = operands->items[i];
-        if (stat(path, &about) == 0 && S_ISDIR(about.st_mode))
+        if (dem_folder_exists(path))
             DEM_TRY(add_folder(path, all, error));
         else if (dem_file_has_suffix(path, "vtp"))
             DEM_TRY(add_vtp(path, all, error));

@@ -26,6 +26,12 @@ dem_status dem_file_write_buffer(const char *path, dem_buffer *buffer, dem_error
 /// Makes a folder, and those it lies in. Error: DEM_CANNOT_WRITE.
 dem_status dem_folder_create(const char *path, dem_error *error);
 
+/// Whether there is such a folder; links are followed.
+bool dem_folder_exists(const char *path);
+
+/// Whether a path means a folder: one that is there, or a name that ends in /.
+bool dem_folder_is_meant(const char *path);
+
 /// The path of a file in a folder, printed as by printf; free it. NULL: out of memory.
 char *dem_path_join(const char *folder, const char *format, ...) DEM_PRINTF(2, 3);
 

@@ -205,6 +205,13 @@ dem_vec3 dem_body_spin(const dem_bodies *b, size_t row, dem_vec3 momentum)
     return quat_rotate(q, v3(own.x * inverse[0], own.y * inverse[1], own.z * inverse[2]));
 }
 
+double dem_body_turning_energy(const dem_bodies *b, size_t row, dem_vec3 spin)
+{
+    const double *inverse = b->inertia + DEM_ROW * row + 1;
+    dem_vec3 own = quat_unrotate(body_orientation(b, row), spin);
+    return (own.x * own.x / inverse[0] + own.y * own.y / inverse[1] + own.z * own.z / inverse[2]) / 2;
+}
+
 double dem_bodies_bytes(const dem_world *w)
 {
     double bytes = sizeof *w->bodies.place;

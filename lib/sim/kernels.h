@@ -12,6 +12,7 @@
 #define DEM_SIM_KERNELS_H
 
 #include "base/simd.h"
+#include "dem/scene.h"
 #include "sim/features.h"
 
 enum { DEM_BODY_ROW = 16, DEM_ROW = 8, DEM_SPHERE_ROW = 4 };
@@ -88,6 +89,7 @@ typedef struct dem_contact_instance {
 /// Energy that the motion of bodies has taken out and put in, in lanes [J].
 typedef struct dem_motion_tally {
     double local[DEM_BLOCK_LANES], drag[DEM_BLOCK_LANES], rolling[DEM_BLOCK_LANES];
+    double work[DEM_BLOCK_LANES];  ///< done by bodies whose motion is given
 } dem_motion_tally;
 
 /// A body whose contacts strain the time step more than it was allowed, see timestep.h.
@@ -111,6 +113,10 @@ typedef struct dem_motion_job {
     double local, viscous;  ///< damping: Cundall's alpha [-], c [1/s]
     bool vector, exclude_gravity;
     bool bounded;  ///< contacts set bounds to the spin
+    // of motion.h only
+    dem_integrator_def schemes;
+    double last_step, turn_kick;  ///< time since the last step; time the moments act [s]
+    double *turning;              ///< [3 a body] rate of the spin in the body, a step before [rad/s^2] (walton-braun)
     dem_motion_tally *tally;  ///< ledger; NULL: none
     uint32_t *asked;          ///< bodies beyond their limit, or not finite
     size_t asked_count;

@@ -5,6 +5,7 @@
 
 #include "base/status.h"
 #include "sim/bodies.h"
+#include "sim/motion.h"
 
 dem_status dem_views_create(dem_world *w, dem_error *error)
 {
@@ -240,9 +241,8 @@ static void view_body(dem_world *w, size_t i)
 {
     dem_views *v = &w->views;
     size_t row = w->bodies.place[i];
-    const double *inertia = w->bodies.inertia + DEM_ROW * row, *p = w->bodies.momentum + DEM_ROW * row;
+    const double *inertia = w->bodies.inertia + DEM_ROW * row;
     const dem_template *t = &w->templates.items[w->bodies.shape[row]];
-    double half = w->last_step / 2;
     dem_vec3 weight = v3_scale(w->gravity, inertia[5]), load[2] = {v3_add(v->force[i], weight), v->moment[i]};
     bool damped = w->damping.local > 0 || w->damping.viscous > 0;
     damping d;
@@ -256,14 +256,13 @@ static void view_body(dem_world *w, size_t i)
     v->mass[i] = inertia[5];
     v->position[i] = wrapped(w, body_position(&w->bodies, row));
     v->orientation[i] = template_principal_orientation(t, body_orientation(&w->bodies, row));
-    v->velocity[i] = v3_scale(v3_along(v3(p[0], p[1], p[2]), half, load[0]), inertia[0]);
-    dem_vec3 momentum = v3_along(v3(p[3], p[4], p[5]), half, load[1]);
-    v->spin[i] = dem_body_spin(&w->bodies, row, momentum);
+    v->velocity[i] = dem_motion_velocity(w, row, load[0]);
+    v->spin[i] = dem_motion_spin(w, row, load[1]);
     if (damped && w->ledger)
         note_damping(w, i, &d);
     dem_energy *e = &v->figures.energy;
     e->kinetic += v3_norm2(v->velocity[i]) * inertia[5] / 2;
-    e->rotational += v3_dot(momentum, v->spin[i]) / 2;
+    e->rotational += dem_body_turning_energy(&w->bodies, row, v->spin[i]);
     e->potential -= v3_dot(w->gravity, unwrapped(w, row)) * inertia[5];
 }
 
@@ -384,6 +383,10 @@ dem_status dem_world_measure(dem_world *w, dem_error *error)
         return dem_fail_memory(error);
     gather(w);
     balance(w);
+    if (w->regions) {
+        dem_body_view bodies = dem_world_bodies(w);
+        dem_regions_measure(w->regions, &bodies, v->contacts, v->contact_count);
+    }
     v->figures.largest_overlap_ratio = fmax(largest_overlap(w), v->figures.overlap_ratio);
     w->clocks[DEM_PASS_MEASURE].seconds += dem_clock() - begin;
     return DEM_OK;
@@ -411,4 +414,9 @@ const dem_wall_view *dem_world_walls(const dem_world *w, size_t *count)
 {
     *count = w->walls.count;
     return w->views.walls;
+}
+
+const dem_measure_view *dem_world_measures(const dem_world *w, size_t *count)
+{
+    return dem_regions_views(w->regions, count);
 }

@@ -63,8 +63,8 @@ static uint64_t hash_constants(const dem_world *w)
         w->domain.high,
         {w->damping.local, w->damping.viscous, w->damping.local_frame + 2 * w->damping.exclude_gravity}};
     h = hash_bytes(h, loads, sizeof loads);
-    double numbers[6] = {w->time_def.step, w->multiple, w->soft.tau, w->domain.periodic[0], w->domain.periodic[1],
-                         w->domain.periodic[2]};
+    double numbers[8] = {w->time_def.step,        w->multiple, w->domain.periodic[0], w->domain.periodic[1],
+                         w->domain.periodic[2], w->integrator.translation, w->integrator.rotation, w->soft.tau};
     return hash_bytes(h, numbers, sizeof numbers);
 }
 

@@ -4,6 +4,7 @@
 
 #include "math/vec.h"
 #include "sim/scene.h"
+#include "sim/schemes.h"
 
 static void put_vec(dem_json_writer *w, const char *key, dem_vec3 v)
 {
@@ -408,6 +409,30 @@ static void put_damping(dem_json_writer *w, const dem_damping_def *damping)
     dem_json_close(w, '}');
 }
 
+static void put_measures(dem_json_writer *w, const dem_scene *scene)
+{
+    open_map(w, "measures");
+    for (size_t i = 0; i < scene->measure_count; i++) {
+        const dem_measure_def *m = &scene->measures[i];
+        dem_json_open_object(w, text_of(m->name));
+        if (m->region == DEM_REGION_BOX) {
+            dem_json_open_array(w, "box", false);
+            put_vec(w, NULL, m->low);
+            put_vec(w, NULL, m->high);
+            dem_json_close(w, ']');
+        } else if (m->region == DEM_REGION_BALL) {
+            dem_json_open_object(w, "ball");
+            put_vec(w, "centre", m->centre);
+            dem_json_put_number(w, "radius", m->radius);
+            dem_json_close(w, '}');
+        } else
+            dem_json_put_bool(w, "whole", true);
+        dem_json_put_bool(w, "kinetic", m->kinetic);
+        dem_json_close(w, '}');
+    }
+    dem_json_close(w, '}');
+}
+
 static void put_output(dem_json_writer *w, const dem_output_def *output)
 {
     char checkpoint[64];
@@ -415,6 +440,7 @@ static void put_output(dem_json_writer *w, const dem_output_def *output)
     dem_json_put_string(w, "directory", text_of(output->directory));
     dem_json_put_number(w, "frames", output->frames);
     dem_json_put_number(w, "series", output->series);
+    dem_json_put_number(w, "contacts", output->contacts);
     if (output->checkpoint_wall) {
         dem_format_double(checkpoint, sizeof checkpoint, output->checkpoint, 17);
         strcat(checkpoint, " s wall");
@@ -443,8 +469,8 @@ static dem_status put_scene(dem_json_writer *w, const dem_scene *scene, dem_erro
     DEM_TRY(put_walls(w, scene, error));
     put_damping(w, &scene->damping);
     dem_json_open_object(w, "integrator");
-    dem_json_put_string(w, "translation", "central");
-    dem_json_put_string(w, "rotation", "lsym");
+    dem_json_put_string(w, "translation", dem_translations[scene->integrator.translation].name);
+    dem_json_put_string(w, "rotation", dem_rotations[scene->integrator.rotation].name);
     dem_json_close(w, '}');
     dem_json_put_string(w, "contacts_between_clumps", multiples[scene->multiple]);
     if (scene->multiple == DEM_MULTIPLE_SOFT) {
@@ -455,6 +481,7 @@ static dem_status put_scene(dem_json_writer *w, const dem_scene *scene, dem_erro
             dem_json_put_string(w, "tau", "auto");
         dem_json_close(w, '}');
     }
+    put_measures(w, scene);
     put_output(w, &scene->output);
     dem_json_close(w, '}');
     return DEM_OK;

@@ -13,6 +13,7 @@
 #include "sim/laws.h"
 #include "sim/mesh_touch.h"
 #include "sim/soft.h"
+#include "sim/region.h"
 #include "sim/template.h"
 #include "sim/walls.h"
 
@@ -38,8 +39,10 @@ enum {
     X(double, wall_limit, 1, "m", (w)->walls.count > 0, "path at which the wall lists are looked at")                  \
     X(double, strain_limit, 1, "-", (w)->features.watch, "strain at which the step is looked at")                      \
     X(int32_t, wraps, 3, "-", (w)->periodic, "how often a periodic side was crossed")                                  \
-    X(double, before, 8, "kg m/s, kg m2/s", (w)->damping.local > 0 || (w)->damping.viscous > 0,                        \
-      "momenta before the contacts")
+    X(double, before, 8, "kg m/s, kg m2/s", (w)->damping.local > 0 || (w)->damping.viscous > 0 || (w)->other_motion,   \
+      "momenta before the contacts")                                                                                   \
+    X(double, turning, 3, "rad/s2", (w)->integrator.rotation == DEM_ROTATION_WALTON_BRAUN,                             \
+      "rate of the spin in the body, a step before")
 
 typedef struct dem_bodies {
     size_t count, padded;  ///< padded: to 8, with the two dummies
@@ -144,6 +147,8 @@ struct dem_world {
     bool periodic;
     dem_damping_def damping;
     dem_multiple multiple;
+    dem_integrator_def integrator;
+    bool other_motion;  ///< than the kernels': see motion.h
     dem_time_def time_def;
     bool ledger;
     dem_clump **clumps;
@@ -192,6 +197,7 @@ struct dem_world {
     dem_push *pushes;
     size_t push_count, push_capacity;
     dem_views views;
+    dem_regions *regions;  ///< NULL: nothing is measured by region
     dem_pass_time clocks[DEM_PASSES];
     uint64_t searches;  ///< for pairs, since the world was made
     double warned[8];

@@ -8,7 +8,9 @@
 #include "sim/contacts.h"
 #include "sim/lists.h"
 #include "sim/measure.h"
+#include "sim/motion.h"
 #include "sim/place.h"
+#include "sim/schemes.h"
 #include "sim/timestep.h"
 
 static const char *const pass_names[DEM_PASSES] = {
@@ -154,6 +156,7 @@ static dem_status make_state(dem_world *w, const dem_scene *scene, dem_error *er
     if (w->periodic)
         DEM_TRY(dem_broad_images(w, error));
     DEM_TRY(make_lists(w, error));
+    DEM_TRY(dem_regions_create(scene, w->clumps, &w->regions, error));
     for (size_t i = 0; i < count; i++)
         w->asked[i] = (uint32_t)i;
     w->asked_count = count;
@@ -166,8 +169,18 @@ static dem_status make_state(dem_world *w, const dem_scene *scene, dem_error *er
     return DEM_OK;
 }
 
+static dem_status check_schemes(const dem_scene *scene, dem_error *error)
+{
+    if ((unsigned)scene->integrator.translation < DEM_TRANSLATION_SCHEMES &&
+        (unsigned)scene->integrator.rotation < DEM_ROTATION_SCHEMES)
+        return DEM_OK;
+    return dem_fail(error, DEM_USAGE, "integrator: there is no such scheme; take one of dem_translation, dem_rotation");
+}
+
 dem_status dem_world_create(const dem_ctx *ctx, const dem_scene *scene, dem_world **world, dem_error *error)
 {
+    *world = NULL;
+    DEM_TRY(check_schemes(scene, error));
     dem_world *w = *world = aligned_alloc(64, (sizeof *w + 63) / 64 * 64);
     if (!w)
         return dem_fail_memory(error);
@@ -175,12 +188,14 @@ dem_status dem_world_create(const dem_ctx *ctx, const dem_scene *scene, dem_worl
                      .domain = scene->domain,
                      .damping = scene->damping,
                      .multiple = scene->multiple,
+                     .integrator = scene->integrator,
                      .time_def = scene->time,
                      .ledger = scene->output.energy,
                      .threads = dem_threads(ctx),
                      .kernels = dem_kernels_choose(NULL)};
     w->own_ctx = ctx ? *ctx : (dem_ctx){0};
     w->ctx = &w->own_ctx;
+    w->other_motion = !dem_schemes_default(scene->integrator);
     w->periodic = scene->domain.periodic[0] || scene->domain.periodic[1] || scene->domain.periodic[2];
     for (int i = 0; i < DEM_PASSES; i++)
         w->clocks[i].name = pass_names[i];
@@ -223,6 +238,7 @@ void dem_world_destroy(dem_world *w)
     dem_soft_release(w);
     dem_team_destroy(w->team);
     dem_views_release(&w->views);
+    dem_regions_release(w->regions);
     void *all[] = {w->clumps,         w->shape_names, w->shifts,     w->mesh_touches, w->tallies,
                    w->motion_tallies, w->asked,       w->part_asked, w->parts,        w->fresh,
                    w->candidates,     w->pushes,      w->strained,   w->part_strained};
@@ -285,6 +301,8 @@ static void motion_pass(dem_world *w, size_t begin, size_t end, double kick, siz
     *asked_count = *strained_count = 0;
     bool damped = w->damping.local > 0 || w->damping.viscous > 0;
     bool tally = (damped || w->features.roll_bound) && w->ledger;
+    double turn_kick = dem_motion_turn_kick(w);
+    void (*move)(const dem_rows *, dem_motion_job *) = w->other_motion ? dem_motion_any : w->kernels->move;
     // the last part moves the rows that fill up, too
     size_t last = end == w->segment_count ? w->bodies.padded : end * DEM_SEGMENT;
     for (size_t from = begin * DEM_SEGMENT; from < last;) {
@@ -305,11 +323,15 @@ static void motion_pass(dem_world *w, size_t begin, size_t end, double kick, siz
                               .vector = w->damping.local_frame == DEM_LOCAL_VECTOR,
                               .exclude_gravity = w->damping.exclude_gravity,
                               .bounded = w->features.roll_bound,
+                              .schemes = w->integrator,
+                              .last_step = w->last_step,
+                              .turn_kick = turn_kick,
+                              .turning = w->bodies.turning,
                               .tally = tally && segment < w->segment_count ? &w->motion_tallies[segment] : NULL,
                               .strain_limit = w->bodies.strain_limit,
                               .strained = w->strained + begin * DEM_SEGMENT + *strained_count,
                               .asked = asked + *asked_count};
-        w->kernels->move(&rows, &job);
+        move(&rows, &job);
         *asked_count += job.asked_count;
         *strained_count += job.strained_count;
         from = to;
@@ -338,7 +360,7 @@ static void step_part(void *user, int which)
 {
     dem_world *w = user;
     size_t part = (size_t)which;
-    double kick = (w->last_step + w->next_step) / 2;
+    double kick = dem_motion_kick(w);
     size_t begin = w->parts[part], end = w->parts[part + 1];
     double t0 = dem_clock();
     if (w->mesh_touches)
@@ -396,7 +418,7 @@ static void set_time(dem_world *w)
 
 static dem_status step_once(dem_world *w, dem_error *error)
 {
-    double kick = (w->last_step + w->next_step) / 2;
+    double kick = dem_motion_kick(w);
     if (w->bodies.before)
         memcpy(w->bodies.before, w->bodies.momentum, w->bodies.padded * DEM_ROW * sizeof *w->bodies.before);
     w->wall_path += w->next_step * w->sweep_speed;

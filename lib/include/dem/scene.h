@@ -200,6 +200,33 @@ typedef struct dem_damping_def {
     double viscous;        ///< F = -c m v, T = -c L [1/s]
 } dem_damping_def;
 
+/// How positions follow from forces, one evaluation of the forces a step (PHYSICS 2.1).
+typedef enum dem_translation {
+    DEM_TRANSLATION_CENTRAL,           ///< v(n+1/2) = v(n-1/2) + a h, x += v(n+1/2) h: order 2, symplectic
+    DEM_TRANSLATION_SYMPLECTIC_EULER,  ///< v += a h, x += v h, velocities said to be of the time of the positions
+    DEM_TRANSLATION_VELOCITY_VERLET,   ///< two half kicks about the step: the trajectory of `central`
+    DEM_TRANSLATION_TAYLOR,            ///< x += v h + a h^2 / 2, v += a h: grows by sqrt(1 + (w h)^2 / 2) a step
+    DEM_TRANSLATION_FORWARD_EULER,     ///< x += v h, v += a h: grows by sqrt(1 + (w h)^2) a step
+    DEM_TRANSLATION_NEWMARK,           ///< explicit, beta 0 and gamma 1/2: the trajectory of `central`
+} dem_translation;
+
+/// How orientations follow from moments (PHYSICS 2.2).
+typedef enum dem_rotation {
+    DEM_ROTATION_LSYM,          ///< angular momentum at half steps, free rotor by a symmetric top between half turns
+    DEM_ROTATION_LSYM4,         ///< the same with five turns of order 4 (Suzuki 1990)
+    DEM_ROTATION_SPIRAL,        ///< leapfrog form of SPIRAL (del Valle et al. 2024)
+    DEM_ROTATION_NO_SQUISH,     ///< turns about single axes in the order 3, 2, 1, 2, 3 (Miller et al. 2002)
+    DEM_ROTATION_OMELYAN,       ///< angular velocity in the body by fixed-point iteration (Omelyan 1998)
+    DEM_ROTATION_FINCHAM,       ///< angular momentum at half steps, orientation by a half step (Fincham 1992)
+    DEM_ROTATION_WALTON_BRAUN,  ///< angular velocity in the body, its rate carried on (Walton & Braun 1993)
+    DEM_ROTATION_PCDM,          ///< predictor and corrector, direct multiplication (Zhao & van Wachem 2013)
+} dem_rotation;
+
+typedef struct dem_integrator_def {
+    dem_translation translation;
+    dem_rotation rotation;
+} dem_integrator_def;
+
 /// How several contacts of one pair of bodies add up.
 typedef enum dem_multiple {
     DEM_MULTIPLE_SUM,
@@ -219,10 +246,27 @@ typedef struct dem_time_def {
     double contact_steps;  ///< least number of automatic steps in the shortest contact [-]; 0: stability alone
 } dem_time_def;
 
+typedef enum dem_region {
+    DEM_REGION_WHOLE,  ///< the domain; where it is open, the box that holds all spheres
+    DEM_REGION_BOX,
+    DEM_REGION_BALL,
+} dem_region;
+
+/// A region whose stress, fabric and packing are measured whenever the world is; it does not move.
+typedef struct dem_measure_def {
+    const char *name;
+    dem_region region;
+    dem_vec3 low, high;  ///< of a box [m]
+    dem_vec3 centre;     ///< of a ball [m]
+    double radius;       ///< of a ball [m]
+    bool kinetic;        ///< the stress with that of the bodies' motion about their mean
+} dem_measure_def;
+
 typedef struct dem_output_def {
     const char *directory;
     double frames;         ///< interval [s]; 0: none
     double series;         ///< interval [s]; 0: none
+    double contacts;       ///< interval of the network of contacts [s]; 0: none
     double checkpoint;     ///< interval [s]; 0: none
     bool checkpoint_wall;  ///< the interval is of the clock on the wall
     bool energy;           ///< keep the energy ledger
@@ -244,8 +288,11 @@ typedef struct dem_scene {
     const dem_wall_def *walls;
     size_t wall_count;
     dem_damping_def damping;
+    dem_integrator_def integrator;
     dem_multiple multiple;
     dem_soft_def soft;
+    const dem_measure_def *measures;
+    size_t measure_count;
     dem_output_def output;
     struct dem_scene_owner *owner;
 } dem_scene;
