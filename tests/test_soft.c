@@ -59,8 +59,9 @@ static void run_spheres(dem_multiple multiple, dem_normal_law normal, dem_vec3 o
     m->scene.time.step = 2e-4;
     m->scene.output.energy = true;
     uint32_t shape = model_sphere(m, 0.5);
-    *model_body(m, shape, v3(0, 0, 0.501)) =
-        (dem_body_def){shape, 1, {0, 0, 0.501}, {1, 0, 0, 0}, {0.3, 0, -0.5}, {1, 4, 2}};
+    dem_body_def *first = model_body(m, shape, v3(0, 0, 0.501));
+    first->velocity = v3(0.3, 0, -0.5);
+    first->spin = v3(1, 4, 2);
     model_body(m, shape, v3(0.15, 0.1, 1.5))->velocity = v3(0, 0, -0.8);
     model_plane(m, v3(0, 0, 0), v3(0, 0, 1));
     dem_world *w = model_world(m, 1);

@@ -107,6 +107,7 @@ static dem_status check_features(const dem_world *w, dem_error *error)
                                                  .cut = true,
                                                  .local_mass = true,
                                                  .friction = true,
+                                                 .decay = true,
                                                  .mindlin = true,
                                                  .slide_damping = true,
                                                  .offset = true,

@@ -41,6 +41,7 @@ static inline dem_features soft_features(const dem_world *w)
                           .cut = f->cut,
                           .local_mass = f->local_mass,
                           .friction = f->friction,
+                          .decay = f->decay,
                           .mindlin = f->mindlin,
                           .slide_damping = f->slide_damping,
                           .ledger = f->ledger,
@@ -102,7 +103,8 @@ static inline dem_vec3 soft_slide(const dem_features f, const soft_spot *spot, c
     normal->force = normal->force * wide_all(s->along);
     friction_law t =
         friction(f, law, normal, wide_all(spot->reduced), wide_all(s->depth), wide_all(s->speed), wide_all(mass),
-                 spring, all3(slip), wide_all(spot->last_step), wide_less(wide_all(0), wide_all(s->depth)));
+                 spring, all3(slip), wide_all(spot->last_step), wide_less(wide_all(0), wide_all(s->depth)),
+                 wide_less(wide_all(1), wide_all(0)));
     dem_vec3 after = first3(t.spring), dash = first3(t.dash);
     *slide = first_lane(t.stiffness);
     *slide_damping = first_lane(t.damping);
@@ -145,7 +147,7 @@ static inline soft_result soft_act(const dem_features f, const soft_spot *spot, 
     double inverse = f.local_mass ? s->share_a + s->share_b : p->a->inverse_mass + p->b->inverse_mass;
     inverse = larger(inverse, 1e-300);
     double mass = 1 / inverse, step = spot->last_step > 0 ? spot->last_step : spot->next_step;
-    normal_law normal = normal_elastic(f, law, wide_all(s->depth), wide_all(spot->reduced), wide_all(spot->area));
+    normal_law normal = normal_elastic(f, law, NULL, wide_all(s->depth), wide_all(spot->reduced), wide_all(spot->area));
     normal_damp(f, law, &normal, wide_all(inverse), wide_all(mass), wide_all(s->depth), wide_all(s->speed),
                 wide_all(spot->last_step), wide_all(1 / step));
     double elastic = first_lane(normal.elastic), stiffness = first_lane(normal.stiffness), slide = 0, slide_damping = 0;

@@ -42,21 +42,6 @@ typedef struct soft_sums {
     double lane[SUMS][DEM_BLOCK_LANES] __attribute__((aligned(64)));
 } soft_sums;
 
-// exp(x) for x <= 0, below e^-45 that; the same bits everywhere
-DEM_INLINE wide soft_exp(wide x)
-{
-    static const double c[] = {1.0 / 479001600, 1.0 / 39916800, 1.0 / 3628800, 1.0 / 362880, 1.0 / 40320, 1.0 / 5040,
-                               1.0 / 720,       1.0 / 120,      1.0 / 24,      1.0 / 6,      0.5,         1};
-    x = wide_max(x, wide_all(-45)) * wide_all(1.0 / 128);
-    wide p = wide_all(c[0]);
-    for (size_t i = 1; i < sizeof c / sizeof *c; i++)
-        p = p * x + wide_all(c[i]);
-    p = p * x + wide_all(1);
-    for (int i = 0; i < 7; i++)
-        p = p * p;
-    return p;
-}
-
 DEM_INLINE wide3 all3(dem_vec3 v)
 {
     return (wide3){wide_all(v.x), wide_all(v.y), wide_all(v.z)};
@@ -107,7 +92,7 @@ DEM_INLINE void sum_lanes(const soft_patch_data *p, const double *rows, const ui
     wide m[8], per_tau = wide_all(1 / p->tau), value, slope;
     rows_load(rows, DEM_ROW, row, m);
     soft_window(m[ROW_OVERLAP] * per_tau, &value, &slope);
-    wide e = m[ROW_WEIGHT] * soft_exp((m[ROW_OVERLAP] - wide_all(p->deepest)) * per_tau);
+    wide e = m[ROW_WEIGHT] * wide_exp((m[ROW_OVERLAP] - wide_all(p->deepest)) * per_tau);
     sum_add(s, SUM_S, l, e * value);
     e = e * slope;
     wide3 n = {m[ROW_NORMAL], m[ROW_NORMAL + 1], m[ROW_NORMAL + 2]};

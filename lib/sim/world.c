@@ -116,15 +116,35 @@ static dem_status make_lists(dem_world *w, dem_error *error)
     return dem_views_create(w, error);
 }
 
-// of the largest spheres, under the law that lets them hold farthest
-static double longest_reach(const dem_world *w)
+// under the law that lets surfaces hold farthest; of JKR for the largest spheres, of bonds for the smallest
+static dem_status set_reach(dem_world *w, dem_error *error)
 {
-    double radius = 0, reach = 0;
-    for (size_t row = 0; row < w->bodies.count; row++)
-        radius = larger(radius, w->templates.items[w->bodies.shape[row]].radius_max * body_scale(&w->bodies, row));
-    for (size_t i = 0; w->features.jkr && radius > 0 && i < w->laws.count; i++)
-        reach = larger(reach, law_reach(w->laws.rows + LAW_SLOTS * i, radius));
-    return reach;
+    double most = 0, least = INFINITY;
+    for (size_t row = 0; row < w->bodies.count; row++) {
+        const dem_template *t = &w->templates.items[w->bodies.shape[row]];
+        most = larger(most, t->radius_max * body_scale(&w->bodies, row));
+        least = smaller(least, t->radius_min * body_scale(&w->bodies, row));
+    }
+    for (size_t i = 0; (w->features.jkr || w->features.bonded) && most > 0 && i < w->laws.count; i++) {
+        const double *law = w->laws.rows + LAW_SLOTS * i;
+        double bond = law_bond_reach(law, least * least / (least + most));
+        if (!(bond <= least))
+            return dem_fail(error, DEM_BAD_INPUT,
+                            "breakable cohesion would hold until surfaces are %.3g m apart, more than the smallest "
+                            "radius, %.3g m; lower \"tension\" or \"gap\", or raise the stiffness",
+                            bond, least);
+        w->reach = larger(w->reach, larger(law_reach(law, most), bond));
+    }
+    return DEM_OK;
+}
+
+static void set_holds(dem_world *w, const dem_body_def *defs, size_t count)
+{
+    for (size_t i = 0; i < count; i++) {
+        w->held |= defs[i].hold != 0;
+        w->kept |= (defs[i].hold & (DEM_HOLD_VELOCITY | DEM_HOLD_SPIN)) != 0;
+    }
+    w->other_motion = w->held || !dem_schemes_default(w->integrator);
 }
 
 static dem_status make_state(dem_world *w, const dem_scene *scene, dem_error *error)
@@ -136,6 +156,7 @@ static dem_status make_state(dem_world *w, const dem_scene *scene, dem_error *er
     DEM_TRY(dem_laws_create(scene, &w->laws, error));
     DEM_TRY(dem_walls_create(w->ctx, scene, &w->walls, error));
     DEM_TRY(dem_place_bodies(w, scene, &defs, &count, error));
+    set_holds(w, defs, count);
     set_features(w, defs, count);
     dem_features still = w->features;
     still.moving = false;
@@ -150,7 +171,7 @@ static dem_status make_state(dem_world *w, const dem_scene *scene, dem_error *er
     if (!w->team)
         return dem_fail_memory(error);
     DEM_TRY(dem_soft_create(w, scene->soft.tau, error));
-    w->reach = longest_reach(w);
+    DEM_TRY(set_reach(w, error));
     w->skin = larger(dem_broad_skin(w), 2.2 * w->reach);
     DEM_TRY(dem_search_create(w, error));
     if (w->periodic)
@@ -195,7 +216,6 @@ dem_status dem_world_create(const dem_ctx *ctx, const dem_scene *scene, dem_worl
                      .kernels = dem_kernels_choose(NULL)};
     w->own_ctx = ctx ? *ctx : (dem_ctx){0};
     w->ctx = &w->own_ctx;
-    w->other_motion = !dem_schemes_default(scene->integrator);
     w->periodic = scene->domain.periodic[0] || scene->domain.periodic[1] || scene->domain.periodic[2];
     for (int i = 0; i < DEM_PASSES; i++)
         w->clocks[i].name = pass_names[i];
@@ -300,7 +320,7 @@ static void motion_pass(dem_world *w, size_t begin, size_t end, double kick, siz
     size_t *asked_count = &w->part_asked[part], *strained_count = &w->part_strained[part];
     *asked_count = *strained_count = 0;
     bool damped = w->damping.local > 0 || w->damping.viscous > 0;
-    bool tally = (damped || w->features.roll_bound) && w->ledger;
+    bool tally = (damped || w->features.roll_bound || w->kept) && w->ledger;
     double turn_kick = dem_motion_turn_kick(w);
     void (*move)(const dem_rows *, dem_motion_job *) = w->other_motion ? dem_motion_any : w->kernels->move;
     // the last part moves the rows that fill up, too
@@ -326,6 +346,8 @@ static void motion_pass(dem_world *w, size_t begin, size_t end, double kick, siz
                               .schemes = w->integrator,
                               .last_step = w->last_step,
                               .turn_kick = turn_kick,
+                              .hold = w->bodies.hold,
+                              .kept = w->bodies.kept,
                               .turning = w->bodies.turning,
                               .tally = tally && segment < w->segment_count ? &w->motion_tallies[segment] : NULL,
                               .strain_limit = w->bodies.strain_limit,
