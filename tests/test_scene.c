@@ -202,6 +202,26 @@ static void a_body_has_its_values(void **state)
     check_near(b[1].scale, 0.2, 1e-16);
     check(b[1].orientation.w == 1 && b[1].velocity.x == 0 && b[1].spin.z == 0);
     check_close(b[2].scale, 1 / cbrt(13.5), 1e-13);
+    check(s.dimension == 3 && b[0].hold == 0 && b[2].hold == 0);
+    dem_scene_release(&s);
+}
+
+static void bodies_of_any_kind_can_be_held(void **state)
+{
+    (void)state;
+    dem_scene s = scene_of("{" SCENE_HEAD ", 'dimension': 2, 'bodies': [\n"
+                           "{'shape': 'ball', 'position': [0, 0, 0], 'fixed': true},\n"
+                           "{'shape': 'ball', 'position': [0, 0, 0], 'fixed': false, 'lock': 'ry'},\n"
+                           "{'shape': 'ball', 'position': [0, 0, 0], 'lock': ['x', 'y', 'z', 'rx', 'ry', 'rz']},\n"
+                           "{'shape': 'ball', 'position': [0, 0, 0], 'velocity': [1, 2, 3], 'prescribed': "
+                           "['velocity']},\n"
+                           "{'shape': 'ball', 'position': [0, 0, 0], 'spin': [1, 2, 3], 'prescribed': 'spin'},\n"
+                           "{'fill': {'mix': [{'shape': 'ball'}], 'box': [[0, 0, 0], [1, 1, 1]], 'count': 1},\n"
+                           " 'lock': ['x', 'rz']}]}");
+    const dem_body_def *b = s.bodies.bodies;
+    check(s.dimension == 2 && b[0].hold == (DEM_HOLD_VELOCITY | DEM_HOLD_SPIN) && b[1].hold == DEM_LOCK_RY);
+    check(b[2].hold == 63 && b[3].hold == DEM_HOLD_VELOCITY && b[4].hold == DEM_HOLD_SPIN);
+    check(s.bodies.fills[0].hold == (DEM_LOCK_X | DEM_LOCK_RZ));
     dem_scene_release(&s);
 }
 
@@ -394,6 +414,7 @@ int main(void)
         cmocka_unit_test(spheres_get_the_mass_and_frame_of_their_union),
         cmocka_unit_test(spheres_keep_a_mass_that_is_given),
         cmocka_unit_test(a_body_has_its_values),
+        cmocka_unit_test(bodies_of_any_kind_can_be_held),
         cmocka_unit_test(a_fill_has_its_values),
         cmocka_unit_test(walls_have_their_values),
         cmocka_unit_test(the_sample_of_the_design_reads_with_its_files),

@@ -32,7 +32,7 @@ static void check_same_law(const dem_pair_law *a, const dem_pair_law *b)
 static void check_same_fill(const dem_fill_def *a, const dem_fill_def *b)
 {
     check(a->mix_count == b->mix_count && a->share_by_mass == b->share_by_mass && a->count == b->count);
-    check(a->void_ratio == b->void_ratio && a->gap == b->gap && a->seed == b->seed);
+    check(a->void_ratio == b->void_ratio && a->gap == b->gap && a->seed == b->seed && a->hold == b->hold);
     check_vec(a->low, b->low, 0);
     check_vec(a->high, b->high, 0);
     check_vec(a->velocity, b->velocity, 0);
@@ -50,6 +50,7 @@ static void check_same_fill(const dem_fill_def *a, const dem_fill_def *b)
 // compares what the text cannot: numbers in every bit, clumps, meshes
 static void check_same_scene(const dem_scene *a, const dem_scene *b)
 {
+    check(a->dimension == b->dimension);
     check(a->shape_count == b->shape_count && a->bodies.count == b->bodies.count && a->wall_count == b->wall_count);
     assert_memory_equal(&a->time, &b->time, sizeof a->time);
     assert_memory_equal(&a->domain, &b->domain, offsetof(dem_domain_def, periodic) + sizeof a->domain.periodic);
@@ -69,7 +70,7 @@ static void check_same_scene(const dem_scene *a, const dem_scene *b)
         check_same_fill(&a->bodies.fills[i], &b->bodies.fills[i]);
     for (size_t i = 0; i < a->bodies.count; i++)
         assert_memory_equal(&a->bodies.bodies[i].scale, &b->bodies.bodies[i].scale,
-                            sizeof(dem_body_def) - offsetof(dem_body_def, scale));
+                            offsetof(dem_body_def, hold) + sizeof(uint32_t) - offsetof(dem_body_def, scale));
     for (size_t i = 0; i < a->wall_count; i++) {
         check(a->walls[i].kind == b->walls[i].kind && a->walls[i].material == b->walls[i].material);
         check_vec(a->walls[i].spin, b->walls[i].spin, 0);
@@ -104,7 +105,8 @@ static void a_resolved_scene_reads_back_as_the_same(void **state)
     check_round_trip("{'schema': 'dem-scene/1'}", NULL);
     check_round_trip(SCENE_SAMPLE, scene_folder());
     check_round_trip(
-        "{" SCENE_HEAD ", 'domain': {'min': [0, -1, null], 'max': [1.1, 1, null], 'periodic': [true, true, false]},\n"
+        "{" SCENE_HEAD
+        ", 'dimension': 2, 'domain': {'min': [0, -1, null], 'max': [1.1, 1, null], 'periodic': [true, true, false]},\n"
         "'time': {'end': 0.1, 'step': 1e-6, 'contact_steps': 0}, 'contacts_between_clumps': 'mean',\n"
         "'damping': {'local': 0.7, 'local_frame': 'vector', 'viscous': 1}, 'output': {'checkpoint': 3, 'energy': "
         "false},\n"
@@ -119,7 +121,10 @@ static void a_resolved_scene_reads_back_as_the_same(void **state)
         "  {'shape': 'pair', 'size': {'law': 'table', 'sizes': [1, 2, 3], 'passing': [0, 0.5, 1]}},\n"
         "  {'shape': 'pair', 'size': {'law': 'lognormal', 'median': 1, 'sigma': 0.1}}], 'share_by': 'mass',\n"
         "  'box': [[0, 0, 0], [1, 1, 1]], 'void_ratio': 0.7, 'seed': -3}},\n"
-        " {'shape': 'pair', 'position': [1, 2, 3], 'size': '12 mm'}]}",
+        " {'shape': 'pair', 'position': [1, 2, 3], 'size': '12 mm', 'fixed': true},\n"
+        " {'shape': 'pair', 'position': [1, 2, 3], 'velocity': [1, 2, 3], 'prescribed': 'velocity', 'lock': ['rx', "
+        "'rz']},\n"
+        " {'fill': {'mix': [{'shape': 'ball'}], 'box': [[0, 0, 0], [1, 1, 1]], 'count': 2}, 'lock': 'z'}]}",
         NULL);
     check_round_trip(
         "{'schema': 'dem-scene/1', 'materials': {'a': {'young': 1e9, 'poisson': 0.3}, 'b': {'density': 3,\n"
@@ -181,6 +186,7 @@ static void every_default_is_written(void **state)
                                         "\"local_frame\": \"space\"",
                                         "\"exclude_gravity\": false",
                                         "\"translation\": \"central\"",
+                                        "\"dimension\": 3",
                                         "\"contacts_between_clumps\": \"sum\"",
                                         "\"directory\": \"out\"",
                                         "\"checkpoint\": 0",
@@ -213,8 +219,8 @@ static void a_scene_made_by_hand_is_written_too(void **state)
     const dem_shape_def shape = {.name = "s", .clump = clump};
     dem_pair_law law = dem_pair_law_defaults();
     law.stiffness = 5;
-    const dem_body_def bodies[] = {{0, 1, {1, 2, 3}, {1, 0, 0, 0}, {0, 0, 0}, {0, 0, 0}},
-                                   {0, 2, {4, 5, 6}, {1, 0, 0, 0}, {0, 0, 0}, {0, 0, 0}}};
+    const dem_body_def bodies[] = {{0, 1, {1, 2, 3}, {1, 0, 0, 0}, {0, 0, 0}, {0, 0, 0}, 0},
+                                   {0, 2, {4, 5, 6}, {1, 0, 0, 0}, {0, 0, 0}, {0, 0, 0}, DEM_LOCK_Z}};
     dem_wall_def wall = {.name = "w", .normal = {0, 0, 1}, .spin = {0, 0, 2}};
     dem_scene scene = dem_scene_defaults(), back;
     scene.materials = &material, scene.material_count = 1;

@@ -218,6 +218,24 @@ DEM_INLINE void damp(const dem_motion_job *job, const wide before[8], const wide
     }
 }
 
+/// Takes the damping back of what is held: nothing slows that. Of one body, as all that other schemes and held bodies
+/// do.
+DEM_INLINE void spare_held(const dem_motion_job *job, size_t row, wide momentum[8], damping *d)
+{
+    uint32_t hold = job->hold[row];
+    for (int k = 0; k < 2; k++) {
+        if (!(hold & (k ? DEM_HOLD_SPIN : DEM_HOLD_VELOCITY)))
+            continue;
+        wide3 *parts[2] = {&d->local[k], &d->drag[k]};
+        for (int i = 0; i < 2; i++) {
+            momentum[3 * k] = momentum[3 * k] - parts[i]->x;
+            momentum[3 * k + 1] = momentum[3 * k + 1] - parts[i]->y;
+            momentum[3 * k + 2] = momentum[3 * k + 2] - parts[i]->z;
+            *parts[i] = scale3(*parts[i], wide_all(0));
+        }
+    }
+}
+
 /// Rolling resistance that contacts bound (Irazabal, Salazar & Onate 2017): takes what it may of the angular momentum,
 /// at most all of it, so that it never turns a spin round. Returns the impulse.
 DEM_INLINE wide3 hold_spin(wide momentum[8])
@@ -294,7 +312,11 @@ DEM_INLINE void move_bodies(const dem_rows *rows, dem_motion_job *job, const boo
             wide before[8];
             rows_load_next(job->before + DEM_ROW * i, DEM_ROW, before);
             damp(job, before, was, weight, momentum, &d);
+            if (other && job->hold)
+                spare_held(job, i, momentum, &d);
         }
+        if (bounded && other && job->hold && job->hold[i] & DEM_HOLD_SPIN)
+            momentum[7] = wide_all(0);
         if (bounded)
             held[1] = hold_spin(momentum);
         momentum[0] = momentum[0] + weight.x;

@@ -68,6 +68,26 @@ static size_t count_walls(const dem_world *w, dem_wall_form form)
     return count;
 }
 
+static void put_held(dem_buffer *out, const dem_world *w)
+{
+    size_t given = 0, locked = 0, plane = 0;
+    for (size_t row = 0; row < w->bodies.count; row++) {
+        uint32_t hold = body_hold(&w->bodies, row);
+        bool flat = (hold & (DEM_LOCK_ALL | DEM_LOCK_TURNS)) == DEM_LOCK_PLANE;
+        given += (hold & (DEM_HOLD_VELOCITY | DEM_HOLD_SPIN)) != 0;
+        plane += flat;
+        locked += !flat && (hold & (DEM_LOCK_ALL | DEM_LOCK_TURNS));
+    }
+    dem_buffer_text(out, "    body by body, for some are held:");
+    if (given)
+        dem_buffer_print(out, " %zu at a velocity or spin%s", given, locked + plane ? "," : "");
+    if (locked)
+        dem_buffer_print(out, " %zu along or about some axes%s", locked, plane ? "," : "");
+    if (plane)
+        dem_buffer_print(out, " %zu in two dimensions", plane);
+    dem_buffer_text(out, "\n");
+}
+
 static void put_motion(dem_buffer *out, const dem_world *w, size_t isotropic)
 {
     const dem_scheme *t = &dem_translations[w->integrator.translation], *r = &dem_rotations[w->integrator.rotation];
@@ -82,11 +102,13 @@ static void put_motion(dem_buffer *out, const dem_world *w, size_t isotropic)
         dem_buffer_text(out, "rotation by lsym\n");
     else
         dem_buffer_print(out, "rotation by %s (%s)\n", r->name, r->about);
-    if (w->other_motion)
+    if (!dem_schemes_default(w->integrator))
         dem_buffer_print(out,
                          "    one evaluation of the forces a step; body by body, about %g times as long as by the "
                          "default schemes\n",
                          r->number);
+    if (w->held)
+        put_held(out, w);
 }
 
 static void put_passes(dem_buffer *out, const dem_world *w)

@@ -115,6 +115,8 @@ typedef struct dem_motion_job {
     // of motion.h only
     dem_integrator_def schemes;
     double last_step, turn_kick;  ///< time since the last step; time the moments act [s]
+    const uint32_t *hold;         ///< [bodies] bits of dem_hold; NULL: none is held
+    const double *kept;           ///< [6 a body] velocity and spin that are held [m/s], [rad/s]
     double *turning;              ///< [3 a body] rate of the spin in the body, a step before [rad/s^2] (walton-braun)
     dem_motion_tally *tally;  ///< ledger; NULL: none
     uint32_t *asked;          ///< bodies beyond their limit, or not finite

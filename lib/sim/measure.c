@@ -201,6 +201,15 @@ static damping damping_of(const dem_world *w, size_t row, dem_vec3 weight, const
     return d;
 }
 
+// nothing slows what is held
+static void spare_held(uint32_t hold, damping *d)
+{
+    if (hold & DEM_HOLD_VELOCITY)
+        d->local[0] = d->drag[0] = v3(0, 0, 0);
+    if (hold & DEM_HOLD_SPIN)
+        d->local[1] = d->drag[1] = v3(0, 0, 0);
+}
+
 // what damping takes in the half step to the positions' time, which is in no tally yet
 static void note_damping(dem_world *w, size_t i, const damping *d)
 {
@@ -210,6 +219,16 @@ static void note_damping(dem_world *w, size_t i, const damping *d)
     dem_vec3 turn = v3_scale(v3_add(v3(motion[3], motion[4], motion[5]), v->spin[i]), w->last_step / 4);
     v->since.local -= v3_dot(d->local[0], path) + v3_dot(d->local[1], turn);
     v->since.drag -= v3_dot(d->drag[0], path) + v3_dot(d->drag[1], turn);
+}
+
+// ... and what bodies do whose motion is given: they count as walls, without energy of their own
+static void note_holding(dem_world *w, size_t i)
+{
+    dem_views *v = &w->views;
+    uint32_t hold = body_hold(&w->bodies, w->bodies.place[i]);
+    double power = hold & DEM_HOLD_VELOCITY ? v3_dot(v->force[i], v->velocity[i]) : 0;
+    power += hold & DEM_HOLD_SPIN ? v3_dot(v->moment[i], v->spin[i]) : 0;
+    v->since.work -= w->last_step / 2 * power;
 }
 
 static dem_vec3 unwrapped(const dem_world *w, size_t row)
@@ -243,14 +262,16 @@ static void view_body(dem_world *w, size_t i)
     dem_vec3 weight = v3_scale(w->gravity, inertia[5]), load[2] = {v3_add(v->force[i], weight), v->moment[i]};
     bool damped = w->damping.local > 0 || w->damping.viscous > 0;
     damping d;
+    uint32_t hold = body_hold(&w->bodies, row);
     if (damped) {
         d = damping_of(w, row, weight, load);
+        spare_held(hold, &d);
         for (int k = 0; k < 2; k++)
             load[k] = v3_add(load[k], v3_add(d.local[k], d.drag[k]));
     }
     v->shape[i] = w->bodies.shape[row];
     v->scale[i] = body_scale(&w->bodies, row);
-    v->mass[i] = inertia[5];
+    v->mass[i] = body_mass(w, row);
     v->position[i] = wrapped(w, body_position(&w->bodies, row));
     v->orientation[i] = template_principal_orientation(t, body_orientation(&w->bodies, row));
     v->velocity[i] = dem_motion_velocity(w, row, load[0]);
@@ -258,8 +279,12 @@ static void view_body(dem_world *w, size_t i)
     if (damped && w->ledger)
         note_damping(w, i, &d);
     dem_energy *e = &v->figures.energy;
-    e->kinetic += v3_norm2(v->velocity[i]) * inertia[5] / 2;
-    e->rotational += dem_body_turning_energy(&w->bodies, row, v->spin[i]);
+    if (hold & (DEM_HOLD_VELOCITY | DEM_HOLD_SPIN))
+        note_holding(w, i);
+    if (!(hold & DEM_HOLD_VELOCITY))
+        e->kinetic += v3_norm2(v->velocity[i]) * v->mass[i] / 2;
+    if (!(hold & DEM_HOLD_SPIN))
+        e->rotational += dem_body_turning_energy(&w->bodies, row, v->spin[i]);
     e->potential -= v3_dot(w->gravity, unwrapped(w, row)) * inertia[5];
 }
 
@@ -321,6 +346,7 @@ dem_energy dem_ledger(const dem_world *w)
         e.local += lanes(w->motion_tallies[i].local);
         e.drag += lanes(w->motion_tallies[i].drag);
         e.friction += lanes(w->motion_tallies[i].rolling);
+        e.work += lanes(w->motion_tallies[i].work);
     }
     return e;
 }

@@ -66,16 +66,68 @@ static void put_rotor(const rotor_body *b, double q[4], double motion[8], double
     memcpy(motion + 3, (double[]){spin.x, spin.y, spin.z}, 3 * sizeof *motion);
 }
 
-static void advance(const dem_motion_job *job, size_t row, const double was[8], const double inertia[8], double pose[8],
-                    double motion[8], double momentum[8])
+// ---- bodies that are held
+
+// keeps a velocity or a spin (`at` of six) against the impulse, which is gone then
+static void keep(const dem_motion_job *job, size_t row, int at, double motion[8], double momentum[8])
+{
+    double work = 0;
+    for (int k = at; k < at + 3; k++) {
+        motion[k] = job->kept[6 * row + (size_t)k];
+        work -= momentum[k] * motion[k];
+        momentum[k] = 0;
+    }
+    if (job->tally)
+        tally_add(job->tally->work, row, work);
+}
+
+// turns about the free axes, for the spin of the middle of the step
+static void rotate_locked(rotor_body *b, uint32_t hold)
+{
+    b->momentum = v3_add(b->momentum, b->impulse);
+    dem_vec3 spin = locked_spin(b->q, b->inverse, b->momentum, hold);
+    if (b->inverse[0] != b->inverse[1] || b->inverse[1] != b->inverse[2]) {
+        dem_quat middle = quat_multiply(turn_by(v3_scale(spin, b->step / 2)), b->q);
+        spin = locked_spin(middle, b->inverse, b->momentum, hold);
+    }
+    b->q = quat_multiply(turn_by(v3_scale(spin, b->step)), b->q);
+    spin = locked_spin(b->q, b->inverse, b->momentum, hold);
+    b->momentum = quat_rotate(b->q, over_axes(quat_unrotate(b->q, spin), b->inverse));
+}
+
+// ---- one body
+
+static void translate(const dem_motion_job *job, size_t row, uint32_t hold, const double was[8],
+                      const double inertia[8], double pose[8], double motion[8], double momentum[8])
 {
     double share = dem_translations[job->schemes.translation].number;
     for (int k = 0; k < 3; k++) {
+        if (hold & (uint32_t)(DEM_LOCK_X << k))
+            momentum[k] = 0;
         motion[k] = momentum[k] * inertia[0];
+    }
+    if (hold & DEM_HOLD_VELOCITY)
+        keep(job, row, 0, motion, momentum);
+    for (int k = 0; k < 3; k++)
         pose[k] = fma(job->step, share * motion[k] + (1 - share) * was[k], pose[k]);
+}
+
+static void advance(const dem_motion_job *job, size_t row, const double was[8], const double inertia[8], double pose[8],
+                    double motion[8], double momentum[8])
+{
+    uint32_t hold = job->hold ? job->hold[row] : 0;
+    translate(job, row, hold, was, inertia, pose, motion, momentum);
+    if (hold & DEM_HOLD_SPIN) {
+        keep(job, row, 3, motion, momentum);
+        dem_quat q = {pose[3], pose[4], pose[5], pose[6]};
+        q = quat_multiply(turn_by(v3_scale(v3(motion[3], motion[4], motion[5]), job->step)), q);
+        memcpy(pose + 3, (double[]){q.w, q.x, q.y, q.z}, 4 * sizeof *pose);
+        return;
     }
     rotor_body b = rotor_of(job, row, pose + 3, momentum, inertia);
-    if (inertia[1] > 0)
+    if (hold & DEM_LOCK_TURNS)
+        rotate_locked(&b, hold);
+    else if (inertia[1] > 0)
         rotate(job, &b, inertia);  // rows that fill up have no moments, and stay
     put_rotor(&b, pose + 3, motion, momentum);
 }
@@ -104,11 +156,21 @@ double dem_motion_turn_kick(const dem_world *w)
 
 // ---- the time of the positions
 
+static dem_vec3 body_kept(const dem_world *w, size_t row, size_t at)
+{
+    const double *kept = w->bodies.kept + 6 * row + at;
+    return v3(kept[0], kept[1], kept[2]);
+}
+
 dem_vec3 dem_motion_velocity(const dem_world *w, size_t row, dem_vec3 force)
 {
     const double *p = w->bodies.momentum + DEM_ROW * row;
     double half = dem_translations[w->integrator.translation].half ? w->last_step / 2 : 0;
-    return v3_scale(v3_along(v3(p[0], p[1], p[2]), half, force), w->bodies.inertia[DEM_ROW * row]);
+    uint32_t hold = body_hold(&w->bodies, row);
+    if (hold & DEM_HOLD_VELOCITY)
+        return body_kept(w, row, 0);
+    dem_vec3 v = v3_scale(v3_along(v3(p[0], p[1], p[2]), half, force), w->bodies.inertia[DEM_ROW * row]);
+    return unlocked_velocity(v, hold);
 }
 
 dem_vec3 dem_motion_spin(const dem_world *w, size_t row, dem_vec3 moment)
@@ -117,10 +179,15 @@ dem_vec3 dem_motion_spin(const dem_world *w, size_t row, dem_vec3 moment)
     dem_rotation scheme = w->integrator.rotation;
     dem_vec3 momentum = v3(p[0], p[1], p[2]);
     double half = dem_rotations[scheme].half ? w->last_step / 2 : 0;
-    if (!carries_spin(scheme))
-        return dem_body_spin(&w->bodies, row, v3_along(momentum, half, moment));
     const double inverse[3] = {inertia[1], inertia[2], inertia[3]};
     dem_quat q = body_orientation(&w->bodies, row);
+    uint32_t hold = body_hold(&w->bodies, row);
+    if (hold & DEM_HOLD_SPIN)
+        return body_kept(w, row, 3);
+    if (hold & DEM_LOCK_TURNS)
+        return locked_spin(q, inverse, v3_along(momentum, half, moment), hold);
+    if (!carries_spin(scheme))
+        return dem_body_spin(&w->bodies, row, v3_along(momentum, half, moment));
     double turning[3] = {0};
     if (w->bodies.turning)
         memcpy(turning, w->bodies.turning + 3 * row, sizeof turning);

@@ -63,8 +63,15 @@ static uint64_t hash_constants(const dem_world *w)
         w->domain.high,
         {w->damping.local, w->damping.viscous, w->damping.local_frame + 2 * w->damping.exclude_gravity}};
     h = hash_bytes(h, loads, sizeof loads);
-    double numbers[7] = {w->time_def.step,        w->multiple, w->domain.periodic[0], w->domain.periodic[1],
-                         w->domain.periodic[2], w->integrator.translation, w->integrator.rotation};
+    double numbers[9] = {w->time_def.step,
+                         w->multiple,
+                         w->domain.periodic[0],
+                         w->domain.periodic[1],
+                         w->domain.periodic[2],
+                         w->integrator.translation,
+                         w->integrator.rotation,
+                         w->held,
+                         w->kept};
     return hash_bytes(h, numbers, sizeof numbers);
 }
 

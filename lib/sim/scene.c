@@ -17,6 +17,7 @@ dem_scene dem_scene_defaults(void)
 {
     return (dem_scene){
         .title = "",
+        .dimension = 3,
         .time = {.end = NAN, .safety = NAN, .contact_steps = 10},
         .domain = {.low = {-INFINITY, -INFINITY, -INFINITY}, .high = {INFINITY, INFINITY, INFINITY}},
         .output = {.directory = "out", .energy = true},

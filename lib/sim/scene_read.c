@@ -188,11 +188,21 @@ static dem_status ignore_text(dem_scene_reader *r, const dem_scene_value *v, con
     return dem_field_text(r, v, field, &text);
 }
 
+static dem_status read_dimension(dem_scene_reader *r, const dem_scene_value *v, const dem_field *field, void *into)
+{
+    uint64_t dimension = 0;
+    dem_field whole = *field;
+    whole.range = (dem_range){.low = 2, .high = 3};
+    DEM_TRY(dem_field_whole(r, v, &whole, &dimension));
+    *(unsigned *)into = (unsigned)dimension;
+    return DEM_OK;
+}
+
 static const dem_field scene_table[] = {
     {"schema", read_schema, .needed = true},
     {.name = "$schema", .read = ignore_text},
     {"title", dem_field_text, .at = offsetof(dem_scene, title)},
-    DEM_UNBUILT("dimension"),
+    {"dimension", read_dimension, .at = offsetof(dem_scene, dimension)},
     {"gravity", dem_field_vector, .at = offsetof(dem_scene, gravity), .dimension = DEM_DIMENSION_ACCELERATION},
     {"time", dem_field_object, .at = offsetof(dem_scene, time), .fields = &time_fields},
     {"domain", read_domain, .at = offsetof(dem_scene, domain), .fields = &domain_fields},

@@ -3,6 +3,7 @@
 #include <string.h>
 
 #include "math/vec.h"
+#include "sim/hold.h"
 #include "sim/scene.h"
 #include "sim/schemes.h"
 
@@ -223,6 +224,26 @@ static void put_shapes(dem_json_writer *w, const dem_scene *scene)
 
 // ---- bodies
 
+// what of it is held; a scene that holds nothing names nothing
+static void put_hold(dem_json_writer *w, uint32_t hold)
+{
+    static const char *const locks[] = {"x", "y", "z", "rx", "ry", "rz"}, *const kept[] = {"velocity", "spin"};
+    if (hold & (DEM_LOCK_ALL | DEM_LOCK_TURNS)) {
+        dem_json_open_array(w, "lock", false);
+        for (int k = 0; k < 6; k++)
+            if (hold >> k & 1)
+                dem_json_put_string(w, NULL, locks[k]);
+        dem_json_close(w, ']');
+    }
+    if (hold & (DEM_HOLD_VELOCITY | DEM_HOLD_SPIN)) {
+        dem_json_open_array(w, "prescribed", false);
+        for (int k = 0; k < 2; k++)
+            if (hold & (uint32_t)(DEM_HOLD_VELOCITY << k))
+                dem_json_put_string(w, NULL, kept[k]);
+        dem_json_close(w, ']');
+    }
+}
+
 static void put_body(dem_json_writer *w, const dem_scene *scene, const dem_body_def *body)
 {
     dem_quat q = body->orientation;
@@ -233,6 +254,7 @@ static void put_body(dem_json_writer *w, const dem_scene *scene, const dem_body_
     put_vec(w, "velocity", body->velocity);
     put_vec(w, "spin", body->spin);
     dem_json_put_number(w, "scale", body->scale);
+    put_hold(w, body->hold);
     dem_json_close(w, '}');
 }
 
@@ -296,6 +318,7 @@ static void put_fill(dem_json_writer *w, const dem_scene *scene, const dem_fill_
     dem_json_put_number(w, "gap", fill->gap);
     put_vec(w, "velocity", fill->velocity);
     dem_json_close(w, '}');
+    put_hold(w, fill->hold);
     dem_json_close(w, '}');
 }
 
@@ -304,6 +327,7 @@ static void put_entry(dem_json_writer *w, const dem_scene *scene, const dem_scen
     if (entry->kind == DEM_ENTRY_FILE) {
         dem_json_open_object(w, NULL);
         dem_json_put_string(w, "file", entry->file);
+        put_hold(w, entry->hold);
         dem_json_close(w, '}');
         return;
     }
@@ -321,7 +345,8 @@ static void put_bodies(dem_json_writer *w, const dem_scene *scene)
     const dem_bodies_def *b = &scene->bodies;
     bool as_read = o && o->bodies == b->bodies && o->body_count == b->count && o->fills == b->fills &&
                    o->fill_count == b->fill_count;
-    const dem_scene_entry plain[] = {{DEM_ENTRY_BODY, NULL, 0, b->count}, {DEM_ENTRY_FILL, NULL, 0, b->fill_count}};
+    const dem_scene_entry plain[] = {{DEM_ENTRY_BODY, NULL, 0, b->count, 0},
+                                     {DEM_ENTRY_FILL, NULL, 0, b->fill_count, 0}};
     const dem_scene_entry *entries = as_read ? o->entries : plain;
     dem_json_open_array(w, "bodies", true);
     for (size_t i = 0; i < (as_read ? o->entry_count : 2); i++)
@@ -458,6 +483,7 @@ static dem_status put_scene(dem_json_writer *w, const dem_scene *scene, dem_erro
     dem_json_open_object(w, NULL);
     dem_json_put_string(w, "schema", "dem-scene/1");
     dem_json_put_string(w, "title", text_of(scene->title));
+    dem_json_put_whole(w, "dimension", scene->dimension == 2 ? 2 : 3);
     put_vec(w, "gravity", scene->gravity);
     put_time(w, scene);
     put_domain(w, &scene->domain);

@@ -119,7 +119,8 @@ static void add_contact(const dem_world *w, body_problem *p, const dem_touch *t,
     if (!wall)
         mass += inverse_mass(w, row[1], arm[1], t->normal);
     mass = 1 / mass;
-    double radius = law[LAW_HERTZ] > 0 ? sqrt(t->reduced * larger(t->overlap, 0)) : 0, times = wall ? 1 : 2;
+    double radius = law[LAW_HERTZ] > 0 ? sqrt(t->reduced * larger(t->overlap, 0)) : 0;
+    double times = wall || hold_whole(body_hold(&w->bodies, row[1])) ? 1 : 2;  // a body that is held is a wall
     radius += law_radius_at_rest(law, t->reduced);
     double kn = law_stiffness(law, t->area_length, radius), kt = law_slide_stiffness(law, t->area_length, radius);
     add_stiffness(w, p->stiffness, row[0], arm[0], t->normal, times * kn, times * kt);

@@ -126,6 +126,15 @@ static double longest_reach(const dem_world *w)
     return reach;
 }
 
+static void set_holds(dem_world *w, const dem_body_def *defs, size_t count)
+{
+    for (size_t i = 0; i < count; i++) {
+        w->held |= defs[i].hold != 0;
+        w->kept |= (defs[i].hold & (DEM_HOLD_VELOCITY | DEM_HOLD_SPIN)) != 0;
+    }
+    w->other_motion = w->held || !dem_schemes_default(w->integrator);
+}
+
 static dem_status make_state(dem_world *w, const dem_scene *scene, dem_error *error)
 {
     dem_body_def *defs = NULL;
@@ -135,6 +144,7 @@ static dem_status make_state(dem_world *w, const dem_scene *scene, dem_error *er
     DEM_TRY(dem_laws_create(scene, &w->laws, error));
     DEM_TRY(dem_walls_create(w->ctx, scene, &w->walls, error));
     DEM_TRY(dem_place_bodies(w, scene, &defs, &count, error));
+    set_holds(w, defs, count);
     set_features(w, defs, count);
     dem_features still = w->features;
     still.moving = false;
@@ -193,7 +203,6 @@ dem_status dem_world_create(const dem_ctx *ctx, const dem_scene *scene, dem_worl
                      .kernels = dem_kernels_choose(NULL)};
     w->own_ctx = ctx ? *ctx : (dem_ctx){0};
     w->ctx = &w->own_ctx;
-    w->other_motion = !dem_schemes_default(scene->integrator);
     w->periodic = scene->domain.periodic[0] || scene->domain.periodic[1] || scene->domain.periodic[2];
     for (int i = 0; i < DEM_PASSES; i++)
         w->clocks[i].name = pass_names[i];
@@ -297,7 +306,7 @@ static void motion_pass(dem_world *w, size_t begin, size_t end, double kick, siz
     size_t *asked_count = &w->part_asked[part], *strained_count = &w->part_strained[part];
     *asked_count = *strained_count = 0;
     bool damped = w->damping.local > 0 || w->damping.viscous > 0;
-    bool tally = (damped || w->features.roll_bound) && w->ledger;
+    bool tally = (damped || w->features.roll_bound || w->kept) && w->ledger;
     double turn_kick = dem_motion_turn_kick(w);
     void (*move)(const dem_rows *, dem_motion_job *) = w->other_motion ? dem_motion_any : w->kernels->move;
     // the last part moves the rows that fill up, too
@@ -323,6 +332,8 @@ static void motion_pass(dem_world *w, size_t begin, size_t end, double kick, siz
                               .schemes = w->integrator,
                               .last_step = w->last_step,
                               .turn_kick = turn_kick,
+                              .hold = w->bodies.hold,
+                              .kept = w->bodies.kept,
                               .turning = w->bodies.turning,
                               .tally = tally && segment < w->segment_count ? &w->motion_tallies[segment] : NULL,
                               .strain_limit = w->bodies.strain_limit,

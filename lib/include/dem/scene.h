@@ -105,6 +105,19 @@ typedef struct dem_shape_def {
     uint32_t material;
 } dem_shape_def;
 
+/// What of a body's motion is held, as bits: components in the axes of space that stay 0, or its velocity and spin,
+/// which stay what they are at the start. A fixed body has both held at 0. What holds it does work (dem_energy).
+typedef enum dem_hold {
+    DEM_LOCK_X = 1,
+    DEM_LOCK_Y = 2,
+    DEM_LOCK_Z = 4,
+    DEM_LOCK_RX = 8,  ///< turning about x
+    DEM_LOCK_RY = 16,
+    DEM_LOCK_RZ = 32,
+    DEM_HOLD_VELOCITY = 64,
+    DEM_HOLD_SPIN = 128,
+} dem_hold;
+
 /// One body as it starts, velocities at the time of the position.
 typedef struct dem_body_def {
     uint32_t shape;
@@ -113,6 +126,7 @@ typedef struct dem_body_def {
     dem_quat orientation;  ///< principal frame -> space
     dem_vec3 velocity;     ///< [m/s]
     dem_vec3 spin;         ///< angular velocity, axes of space [rad/s]
+    uint32_t hold;         ///< bits of dem_hold
 } dem_body_def;
 
 typedef enum dem_size_law {
@@ -151,6 +165,7 @@ typedef struct dem_fill_def {
     double void_ratio;   ///< of the box: volume of voids / volume of solids [-]
     double gap;          ///< least distance between surfaces [m]
     dem_vec3 velocity;   ///< of all [m/s]
+    uint32_t hold;       ///< of all, bits of dem_hold
     uint64_t seed;
 } dem_fill_def;
 
@@ -266,7 +281,8 @@ typedef struct dem_output_def {
 /// A whole scene. Arrays are borrowed; those of a scene that was read belong to `owner`.
 typedef struct dem_scene {
     const char *title;
-    dem_vec3 gravity;  ///< [m/s^2]
+    unsigned dimension;  ///< 3, or 2: bodies keep their z and turn about it only
+    dem_vec3 gravity;    ///< [m/s^2]
     dem_time_def time;
     dem_domain_def domain;
     const dem_material *materials;
