@@ -27,6 +27,9 @@ static void check_same_law(const dem_pair_law *a, const dem_pair_law *b)
     check(a->rolling_coefficient == b->rolling_coefficient && a->rolling_damping == b->rolling_damping);
     check(same(a->rolling_stiffness, b->rolling_stiffness) && a->twisting_coefficient == b->twisting_coefficient);
     check(a->cohesion == b->cohesion && a->energy_density == b->energy_density);
+    check(same(a->static_coefficient, b->static_coefficient) && a->friction_decay == b->friction_decay);
+    check(a->bond_tension == b->bond_tension && a->bond_shear == b->bond_shear && a->bonded == b->bonded);
+    check(a->bond_gap == b->bond_gap);
 }
 
 static void check_same_fill(const dem_fill_def *a, const dem_fill_def *b)
@@ -135,12 +138,14 @@ static void a_resolved_scene_reads_back_as_the_same(void **state)
         " 'friction': {'coefficient': 1, 'stiffness_ratio': 0.1, 'damping_rate': 0}},\n"
         "{'between': ['b', 'b'], 'normal': {'stiffness': 1}, 'rolling': {'law': 'constant', 'coefficient': 0.1},\n"
         " 'twisting': {'law': 'constant', 'coefficient': 0.7},\n"
-        " 'friction': {'coefficient': 1, 'stiffness': 0.1}},\n"
+        " 'friction': {'coefficient': 1, 'stiffness': 0.1, 'static_coefficient': 1.5, 'decay': 7},\n"
+        " 'cohesion': {'law': 'breakable', 'tension': 3, 'shear': 4, 'gap': 0.01}},\n"
         "{'between': ['c', 'c'], 'normal': {'law': 'dmt', 'work_of_adhesion': '50 mJ/m2'},\n"
         " 'rolling': {'law': 'epsd', 'coefficient': 0.1, 'damping': 0.7, 'stiffness': 5},\n"
         " 'twisting': {'law': 'marshall'}, 'cohesion': {'law': 'sjkr', 'energy_density': 7},\n"
         " 'friction': {'coefficient': 1}},\n"
-        "{'between': ['c', 'a'], 'normal': {'stiffness': 1}, 'rolling': {'law': 'bounded', 'coefficient': 0.1}}],\n"
+        "{'between': ['c', 'a'], 'normal': {'stiffness': 1}, 'rolling': {'law': 'bounded', 'coefficient': 0.1},\n"
+        " 'friction': {'coefficient': 1}, 'cohesion': {'law': 'breakable', 'tension': 3, 'shear': 4, 'bonded': 'at_touch'}}],\n"
         "'shapes': {'s': {'spheres': [[0, 0, 0, 1], [0.1, 0.7, 0.3, 0.6]], 'mass': 2, 'inertia': [1, 2, 3],\n"
         " 'material': 'a'}, 't': {'spheres': [[5, 0, 0, 1], [5.1, 0.7, 0.3, 0.6], [4, 0, 0, 0.3]],\n"
         " 'material': 'b'}}}",

@@ -131,6 +131,7 @@ static void visit_contact(void *user, dem_world *w, int form, const dem_contact_
     dem_views *v = &w->views;
     v->since.friction += r->lost_friction;
     v->since.viscous += r->lost_viscous;
+    v->since.broken += r->broken;
     v->since.work += w->last_step / 2 * r->wall_power;
     if (!r->touches)
         return;
@@ -340,6 +341,7 @@ dem_energy dem_ledger(const dem_world *w)
     for (size_t i = 0; i < w->segment_count * (1 + DEM_WALL_FORMS); i++) {
         e.friction += lanes(w->tallies[i].friction);
         e.viscous += lanes(w->tallies[i].viscous);
+        e.broken += lanes(w->tallies[i].broken);
         e.work += lanes(w->tallies[i].work);
     }
     for (size_t i = 0; i < w->segment_count; i++) {
@@ -356,7 +358,7 @@ static void balance(dem_world *w)
     dem_energy *e = &w->views.figures.energy, spent = dem_ledger(w);
     e->elastic = w->views.elastic;
     double now = e->kinetic + e->rotational + e->potential + e->elastic;
-    double gone = spent.friction + spent.viscous + spent.local + spent.drag - spent.work;
+    double gone = spent.friction + spent.viscous + spent.broken + spent.local + spent.drag - spent.work;
     if (w->steps == 0) {
         // a spring that the first sight of a sliding contact puts in is no energy that was there
         w->energy_start = now + gone;
@@ -365,11 +367,12 @@ static void balance(dem_world *w)
     e->start = w->energy_start;
     e->friction = spent.friction;
     e->viscous = spent.viscous;
+    e->broken = spent.broken;
     e->local = spent.local;
     e->drag = spent.drag;
     e->work = spent.work;
     double most = fmax(fmax(e->kinetic + e->rotational, e->elastic), fabs(e->potential - w->potential_start));
-    most = fmax(most, fmax(fabs(e->work), e->friction + e->viscous + e->local + e->drag));
+    most = fmax(most, fmax(fabs(e->work), e->friction + e->viscous + e->broken + e->local + e->drag));
     w->views.most_energy = fmax(w->views.most_energy, most);
     double off = now + gone - e->start;
     e->error = NAN;

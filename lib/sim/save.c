@@ -339,8 +339,11 @@ uint64_t dem_world_hash(const dem_world *w)
         const dem_contacts *contacts = form < 0 ? &w->contacts : &w->wall_contacts[form];
         for (size_t i = 0; contacts->segments && i < w->segment_count; i++) {
             const dem_segment *s = &contacts->segments[i];
-            for (int k = 0; contacts->columns.spring[0] && k < 3; k++)
-                hash = hash_bytes(hash, contacts->columns.spring[k] + s->begin, (s->end - s->begin) * sizeof(double));
+            const dem_contact_columns *c = &contacts->columns;
+            const double *columns[] = {c->spring[0], c->spring[1], c->spring[2], c->bond};
+            for (int k = 0; k < 4; k++)
+                if (columns[k])
+                    hash = hash_bytes(hash, columns[k] + s->begin, (s->end - s->begin) * sizeof(double));
         }
     }
     return hash;

@@ -125,6 +125,10 @@ static void put_friction(dem_json_writer *w, const dem_pair_law *law)
     else if (!mindlin)
         dem_json_put_number(w, "stiffness_ratio", law->stiffness_ratio);
     dem_json_put_number(w, "coefficient", law->friction_coefficient);
+    if (!isnan(law->static_coefficient)) {
+        dem_json_put_number(w, "static_coefficient", law->static_coefficient);
+        dem_json_put_number(w, "decay", law->friction_decay);
+    }
     put_known(w, "damping_rate", law->tangential_rate);
     if (mindlin)
         dem_json_put_bool(w, "rescale", law->rescale);
@@ -157,8 +161,16 @@ static void put_moments(dem_json_writer *w, const dem_pair_law *law)
     }
     if (law->cohesion != DEM_COHESION_NONE) {
         dem_json_open_object(w, "cohesion");
-        dem_json_put_string(w, "law", "sjkr");
-        dem_json_put_number(w, "energy_density", law->energy_density);
+        bool breakable = law->cohesion == DEM_COHESION_BREAKABLE, touch = law->bonded == DEM_BONDED_AT_TOUCH;
+        dem_json_put_string(w, "law", breakable ? "breakable" : "sjkr");
+        if (breakable) {
+            dem_json_put_number(w, "tension", law->bond_tension);
+            dem_json_put_number(w, "shear", law->bond_shear);
+            dem_json_put_string(w, "bonded", touch ? "at_touch" : "at_start");
+            if (!touch)
+                dem_json_put_number(w, "gap", law->bond_gap);
+        } else
+            dem_json_put_number(w, "energy_density", law->energy_density);
         dem_json_close(w, '}');
     }
 }

@@ -1,6 +1,5 @@
 #include <stdlib.h>
 #include <string.h>
-#include <time.h>
 
 #include "base/status.h"
 #include "sim/bodies.h"
@@ -20,13 +19,6 @@ static const char *const pass_names[DEM_PASSES] = {
 };
 
 enum { THREADS_FROM = 512, DOMAINS = 8, DOMAIN_LEAST = 256, DOMAIN_MOST = 4096 };
-
-double dem_clock(void)
-{
-    struct timespec t;
-    clock_gettime(CLOCK_MONOTONIC, &t);
-    return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
-}
 
 // ---- making a world
 
@@ -115,15 +107,26 @@ static dem_status make_lists(dem_world *w, dem_error *error)
     return dem_views_create(w, error);
 }
 
-// of the largest spheres, under the law that lets them hold farthest
-static double longest_reach(const dem_world *w)
+// under the law that lets surfaces hold farthest; of JKR for the largest spheres, of bonds for the smallest
+static dem_status set_reach(dem_world *w, dem_error *error)
 {
-    double radius = 0, reach = 0;
-    for (size_t row = 0; row < w->bodies.count; row++)
-        radius = larger(radius, w->templates.items[w->bodies.shape[row]].radius_max * body_scale(&w->bodies, row));
-    for (size_t i = 0; w->features.jkr && radius > 0 && i < w->laws.count; i++)
-        reach = larger(reach, law_reach(w->laws.rows + LAW_SLOTS * i, radius));
-    return reach;
+    double most = 0, least = INFINITY;
+    for (size_t row = 0; row < w->bodies.count; row++) {
+        const dem_template *t = &w->templates.items[w->bodies.shape[row]];
+        most = larger(most, t->radius_max * body_scale(&w->bodies, row));
+        least = smaller(least, t->radius_min * body_scale(&w->bodies, row));
+    }
+    for (size_t i = 0; (w->features.jkr || w->features.bonded) && most > 0 && i < w->laws.count; i++) {
+        const double *law = w->laws.rows + LAW_SLOTS * i;
+        double bond = law_bond_reach(law, least * least / (least + most));
+        if (!(bond <= least))
+            return dem_fail(error, DEM_BAD_INPUT,
+                            "breakable cohesion would hold until surfaces are %.3g m apart, more than the smallest "
+                            "radius, %.3g m; lower \"tension\" or \"gap\", or raise the stiffness",
+                            bond, least);
+        w->reach = larger(w->reach, larger(law_reach(law, most), bond));
+    }
+    return DEM_OK;
 }
 
 static void set_holds(dem_world *w, const dem_body_def *defs, size_t count)
@@ -158,7 +161,7 @@ static dem_status make_state(dem_world *w, const dem_scene *scene, dem_error *er
     w->team = dem_team_create(w->threads);
     if (!w->team)
         return dem_fail_memory(error);
-    w->reach = longest_reach(w);
+    DEM_TRY(set_reach(w, error));
     w->skin = larger(dem_broad_skin(w), 2.2 * w->reach);
     DEM_TRY(dem_search_create(w, error));
     if (w->periodic)

@@ -90,6 +90,7 @@ typedef struct dem_energy {
     double elastic;              ///< in the contacts
     double friction;             ///< dissipated by sliding
     double viscous;              ///< dissipated by the dashpots of contacts
+    double broken;               ///< let go by bonds that broke
     double local;                ///< dissipated by local damping
     double drag;                 ///< dissipated by global viscous damping
     double work;                 ///< done by moving walls and pushes
