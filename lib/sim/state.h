@@ -5,6 +5,7 @@
 #ifndef DEM_SIM_STATE_H
 #define DEM_SIM_STATE_H
 
+#include "base/clock.h"
 #include "base/memory.h"
 #include "base/threads.h"
 #include "dem/world.h"
@@ -260,8 +261,5 @@ static inline double body_mass(const dem_world *w, size_t row)
     double scale = body_scale(&w->bodies, row), cube = scale * scale * scale;
     return w->templates.items[w->bodies.shape[row]].mass * cube;
 }
-
-/// Seconds since some start.
-double dem_clock(void);
 
 #endif
