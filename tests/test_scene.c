@@ -64,6 +64,9 @@ static void the_plain_sections_are_read(void **state)
     check_vec(s.damping.drag.velocity, v3(0, 0.05, 0), 1e-17);
     check(s.integrator.translation == DEM_TRANSLATION_TAYLOR && s.integrator.rotation == DEM_ROTATION_NO_SQUISH);
     assert_string_equal(s.output.directory, "here");
+    dem_scene soft = scene_of("{'schema': 'dem-scene/1', 'contacts_between_clumps': 'soft', 'soft': {'tau': '3 um'}}");
+    check(soft.multiple == DEM_MULTIPLE_SOFT && soft.soft.tau == 3e-6 && s.soft.tau == 0);
+    dem_scene_release(&soft);
     check(s.output.frames == 5e-3 && s.output.series == 1e-3 && s.output.checkpoint == 120 && !s.output.energy);
     check(!s.output.checkpoint_wall);
     dem_scene_release(&s);

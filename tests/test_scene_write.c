@@ -60,7 +60,8 @@ static void check_same_scene(const dem_scene *a, const dem_scene *b)
     check(a->shape_count == b->shape_count && a->bodies.count == b->bodies.count && a->wall_count == b->wall_count);
     assert_memory_equal(&a->time, &b->time, sizeof a->time);
     assert_memory_equal(&a->domain, &b->domain, offsetof(dem_domain_def, periodic) + sizeof a->domain.periodic);
-    check(a->domain.leaving == b->domain.leaving && a->multiple == b->multiple);
+    check(a->domain.leaving == b->domain.leaving && a->multiple == b->multiple &&
+          a->soft.tau == b->soft.tau);
     assert_memory_equal(&a->integrator, &b->integrator, sizeof a->integrator);
     assert_memory_equal(&a->gravity, &b->gravity, sizeof a->gravity);
     for (size_t i = 0; i < a->shape_count; i++) {
@@ -110,6 +111,8 @@ static void a_resolved_scene_reads_back_as_the_same(void **state)
     (void)state;
     check_round_trip("{'schema': 'dem-scene/1'}", NULL);
     check_round_trip(SCENE_SAMPLE, scene_folder());
+    check_round_trip("{'schema': 'dem-scene/1', 'contacts_between_clumps': 'soft', 'soft': {'tau': '3 um'}}", NULL);
+    check_round_trip("{'schema': 'dem-scene/1', 'contacts_between_clumps': 'soft'}", NULL);
     check_round_trip(
         "{" SCENE_HEAD
         ", 'dimension': 2, 'domain': {'min': [0, -1, null], 'max': [1.1, 1, null], 'periodic': [true, true, false]},\n"

@@ -58,7 +58,10 @@ static dem_status visit_segments(dem_world *w, dem_contacts *contacts, int form,
                 return dem_fail_memory(error);
         dem_contact_job job = {contacts->columns, s->begin, s->end,          w->last_step, 0,
                                w->next_step,      &scratch, w->views.records};
-        (form < 0 ? any->pairs : any->walls[form])(w->features, &rows, &job);
+        if (w->features.soft)
+            dem_soft_records(w, i, form, w->views.records);
+        else
+            (form < 0 ? any->pairs : any->walls[form])(w->features, &rows, &job);
         for (size_t k = 0; k < size; k++) {
             size_t at = segment_place(s, k);
             dem_contact_item item = dem_contact_get(&contacts->columns, at);

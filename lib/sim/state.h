@@ -14,6 +14,7 @@
 #include "sim/kernels.h"
 #include "sim/laws.h"
 #include "sim/mesh_touch.h"
+#include "sim/soft.h"
 #include "sim/region.h"
 #include "sim/template.h"
 #include "sim/walls.h"
@@ -171,6 +172,8 @@ struct dem_world {
     const dem_contact_instance *instance, *wall_instance;
     double *shifts;             ///< [4 an image] (periodic)
     double reach;               ///< how far beyond the touch contacts may hold [m]
+    double ahead;               ///< contacts are listed so much before they touch (soft) [m]
+    dem_soft soft;
     double skin, margin_least;  ///< of the search; of the candidates, by radius: see refresh.h [m]
     int threads;
     size_t domain_bodies;  ///< bodies of a domain: their momenta are written by one thread

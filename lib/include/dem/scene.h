@@ -266,7 +266,16 @@ typedef struct dem_integrator_def {
 } dem_integrator_def;
 
 /// How several contacts of one pair of bodies add up.
-typedef enum dem_multiple { DEM_MULTIPLE_SUM, DEM_MULTIPLE_MEAN, DEM_MULTIPLE_MERGE } dem_multiple;
+typedef enum dem_multiple {
+    DEM_MULTIPLE_SUM,
+    DEM_MULTIPLE_MEAN,
+    DEM_MULTIPLE_MERGE,
+    DEM_MULTIPLE_SOFT,  ///< one contact by a soft maximum of the overlaps, whatever the number of spheres
+} dem_multiple;
+
+typedef struct dem_soft_def {
+    double tau;  ///< length of the soft maximum, .2 to .3 of the typical largest overlap [m]; 0: by likely impacts
+} dem_soft_def;
 
 typedef struct dem_time_def {
     double end;            ///< [s]; NAN: not given
@@ -320,6 +329,7 @@ typedef struct dem_scene {
     dem_damping_def damping;
     dem_integrator_def integrator;
     dem_multiple multiple;
+    dem_soft_def soft;
     const dem_measure_def *measures;
     size_t measure_count;
     dem_output_def output;
