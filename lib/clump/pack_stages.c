@@ -49,6 +49,7 @@ dem_status dem_pack_stages_open(const dem_ctx *ctx, const dem_pack_grain *grain,
                                  line_offsets, p->capacity, p->threads, &run->lines, error);
     if (status != DEM_OK)
         dem_pack_stages_close(run);
+    dem_laps_end(&p->laps, "lines");
     return status;
 }
 
@@ -99,18 +100,21 @@ dem_status dem_pack_place(dem_pack_stages *run, dem_error *error)
     DEM_TRY(dem_pack_go_on(p, error));
     DEM_TRY(dem_candidates_greedy(&p->candidates, &p->lattice, p->kernels, p->inflations, p->inflation_count,
                                   START_FACTOR * wanted, p->threads, state->balls, &state->count, error));
+    dem_laps_end(&p->laps, "choice");
     for (size_t i = 0; i < state->count; i++)
         state->clearances[i].distance = -1;
     if (state->count == 0)
         dem_pack_state_add(state, plain_ball(p));
     DEM_TRY(dem_pack_relax(p, state, (dem_relax_options){15, 0.02, 2e-5}, error));
     DEM_TRY(dem_pack_resize(run, wanted, error));
+    dem_laps_end(&p->laps, "pruning");
     dem_pack_stage(p, breathed);
     DEM_TRY(dem_pack_assign(p, state, error));
     for (int k = 0; k < p->effort.breaths; k++) {
         DEM_TRY(dem_pack_progress(p, (double)k / p->effort.breaths, error));
         DEM_TRY(dem_pack_breathe(p, state, error));
     }
+    dem_laps_end(&p->laps, "breathing");
     return DEM_OK;
 }
 
@@ -166,6 +170,7 @@ dem_status dem_pack_fit(dem_pack_stages *run, dem_error *error)
         DEM_TRY(dem_pack_resize(run, wanted, error));
         DEM_TRY(polish(run, 0, error));
     }
+    dem_laps_end(&p->laps, "fit");
     return DEM_OK;
 }
 
@@ -221,7 +226,10 @@ static dem_status meet_moments(dem_pack_stages *run, dem_error *error)
 dem_status dem_pack_keep_moments(dem_pack_stages *run, dem_error *error)
 {
     dem_pack_stage(&run->p, kept_moments);
-    return run->p.options->moments == DEM_MOMENTS_FREE ? DEM_OK : meet_moments(run, error);
+    if (run->p.options->moments != DEM_MOMENTS_FREE)
+        DEM_TRY(meet_moments(run, error));
+    dem_laps_end(&run->p.laps, "moments");
+    return DEM_OK;
 }
 
 static size_t moments_of(dem_moments_kept kept)

@@ -111,12 +111,15 @@ dem_status dem_packing_open(const dem_ctx *ctx, const dem_pack_grain *grain, con
     if (surface > MOST_SAMPLES)
         surface = MOST_SAMPLES;
     p->capacity = 2 * n + 64;
+    dem_laps_begin(&p->laps);
     dem_status status = dem_lattice_build(grain, at_least(FEWEST_POINTS, POINTS_PER_SPHERE * n), &p->lattice, error);
     if (status == DEM_OK)
         status = dem_samples_build(grain, &p->lattice, surface, INTERIOR_SAMPLES, &p->samples, error);
+    dem_laps_end(&p->laps, "samples");
     if (status == DEM_OK)
         status = dem_candidates_build(grain, &p->samples, at_least(FEWEST_CANDIDATES, CANDIDATES_PER_SPHERE * n),
                                       p->threads, &p->candidates, error);
+    dem_laps_end(&p->laps, "candidates");
     if (n < FEWEST_FOR_THREADS)
         p->threads = 1;
     if (status == DEM_OK) {

@@ -3,6 +3,7 @@
 #ifndef DEM_CLUMP_PACKING_H
 #define DEM_CLUMP_PACKING_H
 
+#include "base/clock.h"
 #include "base/random.h"
 #include "clump/pack_candidates.h"
 #include "clump/pack_kernels.h"
@@ -98,6 +99,7 @@ typedef struct dem_packing {
     dem_pack_state trial;        ///< of `dem_pack_relax`
     dem_pack_state moved;        ///< of `dem_pack_breathe`
     double stage_begin, stage_end, done;  ///< parts of the whole work: of the stage at hand, and what is done
+    dem_laps laps;
 } dem_packing;
 
 dem_status dem_packing_open(const dem_ctx *ctx, const dem_pack_grain *grain, const dem_pack_options *options,

@@ -5,6 +5,7 @@
 #ifndef DEM_SIM_STATE_H
 #define DEM_SIM_STATE_H
 
+#include "base/clock.h"
 #include "base/memory.h"
 #include "base/threads.h"
 #include "dem/world.h"
@@ -236,8 +237,5 @@ static inline dem_rows world_rows(const dem_world *w)
     return (dem_rows){w->bodies.bodies, w->bodies.momentum, w->bodies.inertia, &w->templates.spheres[0][0],
                       w->shifts,        w->laws.rows,       w->walls.rows};
 }
-
-/// Seconds since some start.
-double dem_clock(void);
 
 #endif
