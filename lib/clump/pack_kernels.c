@@ -33,8 +33,55 @@ static void distances(const dem_ball_columns *balls, const dem_block_bound *boun
     }
 }
 
-static void nearest(const dem_sample_block *restrict block, const dem_ball_columns *balls, const uint32_t *list,
-                    size_t count, float *restrict f, int32_t *restrict owner)
+static bool any_above(const float *restrict a, float limit)
+{
+    int32_t any = 0;
+    for (int l = 0; l < DEM_BLOCK; l++)
+        any |= a[l] > limit;
+    return any;
+}
+
+// Which balls can be nearest or second nearest to a sample of a block of radius R about b: with t_i the distance of b
+// to ball i, those with t_i <= (second smallest t) + 2 R. They are put into buckets by t, nearest first: few of them
+// are looked at before no other one can be nearer.
+static size_t list_near(const dem_ball_columns *balls, const dem_block_bound *bound, float slack,
+                        const dem_near_work *work, uint32_t *restrict list, float *restrict least)
+{
+    enum { BUCKETS = 32 };
+    float smallest[2], *restrict distance = work->distance;
+    uint32_t *restrict found = work->found, *restrict bucket = work->bucket, begin[BUCKETS + 1] = {0};
+    size_t count = 0;
+    distances(balls, bound, distance, smallest);
+    float second = balls->count > 1 ? smallest[1] : smallest[0], limit = second + 2 * bound->radius + slack;
+    float per_bucket = BUCKETS / (limit - smallest[0]);
+    for (size_t i = 0; i < balls->padded; i += DEM_LANES) {
+        int32_t any = 0;
+        for (int l = 0; l < DEM_LANES; l++)
+            any |= distance[i + (size_t)l] <= limit;
+        for (int l = 0; any && l < DEM_LANES; l++) {
+            float t = distance[i + (size_t)l];
+            if (t > limit)
+                continue;
+            uint32_t k = (uint32_t)((t - smallest[0]) * per_bucket);
+            bucket[count] = k < BUCKETS ? k : BUCKETS - 1;
+            begin[bucket[count] + 1]++;
+            found[count++] = (uint32_t)i + (uint32_t)l;
+        }
+    }
+    for (int k = 0; k < BUCKETS; k++)
+        begin[k + 1] += begin[k];
+    for (size_t k = 0; k < count; k++) {
+        uint32_t at = begin[bucket[k]]++;
+        list[at] = found[k];
+        least[at] = distance[found[k]];
+    }
+    for (size_t k = count; k-- > 1;)
+        least[k - 1] = least[k] < least[k - 1] ? least[k] : least[k - 1];
+    return count;
+}
+
+static void nearest(const dem_sample_block *restrict block, const dem_ball_columns *balls, const dem_near_list *near,
+                    float *restrict f, int32_t *restrict owner)
 {
     float best[DEM_BLOCK];
     int32_t who[DEM_BLOCK];
@@ -42,8 +89,11 @@ static void nearest(const dem_sample_block *restrict block, const dem_ball_colum
         best[l] = nowhere;
         who[l] = -1;
     }
-    for (size_t k = 0; k < count; k++) {
-        uint32_t i = list[k];
+    for (size_t k = 0; k < near->count; k++) {
+        float farther = near->least[k] - near->reach, limit = farther > near->enough ? farther : near->enough;
+        if (k > 0 && !any_above(best, limit))
+            break;
+        uint32_t i = near->list[k];
         int32_t id = (int32_t)i;
         float x = balls->x[i], y = balls->y[i], z = balls->z[i], r = balls->r[i];
         for (int l = 0; l < DEM_BLOCK; l++) {
@@ -59,15 +109,18 @@ static void nearest(const dem_sample_block *restrict block, const dem_ball_colum
     }
 }
 
-static void nearest_two(const dem_sample_block *restrict block, const dem_ball_columns *balls, const uint32_t *list,
-                        size_t count, float *restrict f, int32_t *restrict owner, float *restrict second)
+static void nearest_two(const dem_sample_block *restrict block, const dem_ball_columns *balls,
+                        const dem_near_list *near, float *restrict f, int32_t *restrict owner, float *restrict second)
 {
     for (int l = 0; l < DEM_BLOCK; l++) {
         f[l] = second[l] = nowhere;
         owner[l] = -1;
     }
-    for (size_t k = 0; k < count; k++) {
-        uint32_t i = list[k];
+    for (size_t k = 0; k < near->count; k++) {
+        float farther = near->least[k] - near->reach, limit = farther > near->enough ? farther : near->enough;
+        if (k > 1 && !any_above(second, limit))
+            break;
+        uint32_t i = near->list[k];
         int32_t id = (int32_t)i;
         float x = balls->x[i], y = balls->y[i], z = balls->z[i], r = balls->r[i];
         for (int l = 0; l < DEM_BLOCK; l++) {
@@ -79,6 +132,21 @@ static void nearest_two(const dem_sample_block *restrict block, const dem_ball_c
             second[l] = other < second[l] ? other : second[l];
         }
     }
+}
+
+static size_t owners_of(const int32_t *restrict owner, uint32_t *restrict owners)
+{
+    uint32_t left = ~(uint32_t)0;
+    size_t count = 0;
+    while (left) {
+        int32_t id = owner[__builtin_ctz(left)];
+        uint32_t same = 0;
+        for (int l = 0; l < DEM_BLOCK; l++)
+            same |= (uint32_t)(owner[l] == id) << l;
+        owners[count++] = (uint32_t)id;
+        left &= ~same;
+    }
+    return count;
 }
 
 // lanes are halved until one is left: the same order everywhere
@@ -503,9 +571,10 @@ static void lines(const dem_ball_columns *balls, dem_line_task *task, bool gradi
 }
 
 const dem_pack_kernels DEM_LEVEL_OF(dem_pack_kernels) = {
-    .distances = distances,
+    .list_near = list_near,
     .nearest = nearest,
     .nearest_two = nearest_two,
+    .owners_of = owners_of,
     .charges = charges,
     .energy = energy,
     .with_ball = with_ball,

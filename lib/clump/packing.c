@@ -73,7 +73,9 @@ static dem_status take_work_space(dem_packing *p, dem_error *error)
     take_columns(p, &p->tree_columns, padded);
     for (int k = 0; k < DEM_CHUNKS; k++) {
         dem_pack_chunk *chunk = &p->chunks[k];
-        chunk->distance = dem_arena_take(&p->arena, padded, sizeof *chunk->distance);
+        chunk->work.distance = dem_arena_take(&p->arena, padded, sizeof *chunk->work.distance);
+        chunk->work.found = dem_arena_take(&p->arena, padded, sizeof *chunk->work.found);
+        chunk->work.bucket = dem_arena_take(&p->arena, padded, sizeof *chunk->work.bucket);
         chunk->slot = dem_arena_take(&p->arena, n, sizeof *chunk->slot);
         chunk->touched = dem_arena_take(&p->arena, n, sizeof *chunk->touched);
         for (size_t i = 0; chunk->slot && i < n; i++)
@@ -138,6 +140,7 @@ void dem_packing_close(dem_packing *p)
 {
     for (int k = 0; k < DEM_CHUNKS; k++) {
         free(p->chunks[k].near);
+        free(p->chunks[k].near_least);
         free(p->chunks[k].lanes);
     }
     dem_arena_release(&p->arena);

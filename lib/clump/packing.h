@@ -38,8 +38,9 @@ typedef struct dem_pack_state {
 /// A fixed share of the sample blocks. Threads take whole chunks, so results do not depend on their number.
 typedef struct dem_pack_chunk {
     size_t begin, end;           ///< blocks
-    float *distance;             ///< [capacity] of the block at hand to each ball
+    dem_near_work work;
     uint32_t *near;              ///< balls near each block, one list after the other
+    float *near_least;           ///< as in dem_near_list
     size_t near_count, near_capacity;
     int32_t *slot;               ///< [capacity] of a ball in `lanes`; -1: not touched
     uint32_t *touched;           ///< [capacity] the balls that have a slot
@@ -84,6 +85,7 @@ typedef struct dem_packing {
     uint32_t *near_size;         ///< [blocks]
     dem_ball *near_at;           ///< [capacity] the balls the lists were made for
     double near_slack;           ///< lists hold while no ball has moved by more than half of it
+    double near_moved;           ///< the farthest that one has moved since
     struct dem_link *links;      ///< [capacity]
     dem_ball *tree_balls;        ///< [capacity] those of the spanning tree found last
     size_t tree_count;
