@@ -102,6 +102,23 @@ static bool any_failed(const dem_packing *p)
     return false;
 }
 
+// what the crew shares: chunks of one state
+typedef struct shared {
+    dem_packing *p;
+    dem_pack_state *state;
+    bool make_lists;
+} shared;
+
+static void assign_part(void *user, int part)
+{
+    const shared *s = user;
+    dem_pack_chunk *chunk = &s->p->chunks[part];
+    if (s->make_lists)
+        list_near(s->p, chunk);
+    if (!chunk->failed)
+        assign_chunk(s->p, chunk, s->state);
+}
+
 static dem_status assign(dem_packing *p, dem_pack_state *state, bool make_lists, dem_error *error)
 {
     DEM_ASSERT(state->count > 0);
@@ -111,13 +128,7 @@ static dem_status assign(dem_packing *p, dem_pack_state *state, bool make_lists,
         p->near_moved = 0;
         memcpy(p->near_at, state->balls, state->count * sizeof *p->near_at);
     }
-#pragma omp parallel for num_threads(p->threads) schedule(dynamic, 1) if (p->threads > 1)
-    for (int k = 0; k < DEM_CHUNKS; k++) {
-        if (make_lists)
-            list_near(p, &p->chunks[k]);
-        if (!p->chunks[k].failed)
-            assign_chunk(p, &p->chunks[k], state);
-    }
+    dem_crew_run(p->crew, DEM_CHUNKS, assign_part, &(shared){p, state, make_lists});
     if (any_failed(p))
         return dem_fail_memory(error);
     sum_energy(p, state);
@@ -156,12 +167,16 @@ static void charge_removal(dem_packing *p, dem_pack_chunk *chunk, dem_pack_state
     }
 }
 
+static void removal_part(void *user, int part)
+{
+    const shared *s = user;
+    charge_removal(s->p, &s->p->chunks[part], s->state);
+}
+
 dem_status dem_pack_removal_costs(dem_packing *p, dem_pack_state *state, dem_error *error)
 {
     DEM_TRY(assign(p, state, true, error));
-#pragma omp parallel for num_threads(p->threads) schedule(dynamic, 1) if (p->threads > 1)
-    for (int k = 0; k < DEM_CHUNKS; k++)
-        charge_removal(p, &p->chunks[k], state);
+    dem_crew_run(p->crew, DEM_CHUNKS, removal_part, &(shared){p, state, false});
     for (size_t i = 0; i < state->count; i++)
         p->cost[i] = 0;
     for (size_t i = 0; i < p->samples.block_count * DEM_BLOCK; i++)

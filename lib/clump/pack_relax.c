@@ -63,14 +63,24 @@ static void sum_equations(dem_packing *p, dem_pack_chunk *chunk)
     }
 }
 
+// what the crew shares: chunks of one state
+typedef struct shared {
+    dem_packing *p;
+    const dem_pack_state *state;
+} shared;
+
+static void equations_part(void *user, int part)
+{
+    const shared *s = user;
+    add_equations(s->p, &s->p->chunks[part], s->state);
+}
+
 static dem_status assemble(dem_packing *p, const dem_pack_state *state, dem_error *error)
 {
     for (size_t i = 0; i < state->count; i++)
         for (int q = 0; q < DEM_EQUATION; q++)
             p->equations[i][q] = 0;
-#pragma omp parallel for num_threads(p->threads) schedule(dynamic, 1) if (p->threads > 1)
-    for (int k = 0; k < DEM_CHUNKS; k++)
-        add_equations(p, &p->chunks[k], state);
+    dem_crew_run(p->crew, DEM_CHUNKS, equations_part, &(shared){p, state});
     bool failed = false;
     for (int k = 0; k < DEM_CHUNKS; k++) {
         sum_equations(p, &p->chunks[k]);

@@ -6,13 +6,9 @@
 // Samples: at least 100 per sphere or the spheres fit the samples instead of the surface; twice as many spheres as
 // asked for are under way at first.
 enum { FEWEST_SAMPLES = 8192, MOST_SAMPLES = 65536, BASE_SAMPLES = 4096, SAMPLES_PER_SPHERE = 100 };
-enum { FEWEST_FOR_THREADS = 300 };  // with fewer spheres threads wait for each other longer than they work
 enum { OUTER_SAMPLES = 4 };     // times as many where none may stay uncovered, nor what lies between them
 enum { INTERIOR_SAMPLES = 4096 };
 enum { FEWEST_POINTS = 8000, POINTS_PER_SPHERE = 150 };    // of the lattice
-// below so many balls a pass takes well under a millisecond and waiting for a second thread costs more than it
-// gains, on a busy machine a hundred times more
-enum { THREADED_SPHERES = 300 };
 enum { FEWEST_CANDIDATES = 3000, CANDIDATES_PER_SPHERE = 3 };
 
 static const double softening = 0.0015;  // below this depth a sample's charge turns from |f|^p to f^2 [d_eq]
@@ -103,7 +99,7 @@ dem_status dem_packing_open(const dem_ctx *ctx, const dem_pack_grain *grain, con
                             const dem_pack_kernels *kernels, dem_packing *p, dem_error *error)
 {
     size_t n = options->spheres;
-    *p = (dem_packing){.ctx = ctx, .options = options, .grain = grain, .threads = dem_threads(ctx),
+    *p = (dem_packing){.ctx = ctx, .options = options, .grain = grain,
                        .kernels = kernels ? kernels : dem_pack_kernels_choose(NULL),
                        .random = random_stream(options->seed, 0), .connected = true, .effort = effort_for(options->effort, n), .stiffness = 0.5,
                        .charge = {.softening = (float)(softening * softening / 4), .inside = 1, .outside = 1}};
@@ -120,13 +116,10 @@ dem_status dem_packing_open(const dem_ctx *ctx, const dem_pack_grain *grain, con
     dem_laps_end(&p->laps, "samples");
     if (status == DEM_OK)
         status = dem_candidates_build(grain, &p->samples, at_least(FEWEST_CANDIDATES, CANDIDATES_PER_SPHERE * n),
-                                      p->threads, &p->candidates, error);
+                                      dem_threads(ctx), &p->candidates, error);
     dem_laps_end(&p->laps, "candidates");
-    if (n < FEWEST_FOR_THREADS)
-        p->threads = 1;
     if (status == DEM_OK) {
-        if (n < THREADED_SPHERES)
-            p->threads = 1;
+        p->crew = dem_crew_create(dem_threads(ctx));
         split_chunks(p);
         set_inflations(p);
         status = take_work_space(p, error);
@@ -143,6 +136,7 @@ void dem_packing_close(dem_packing *p)
         free(p->chunks[k].near_least);
         free(p->chunks[k].lanes);
     }
+    dem_crew_destroy(p->crew);
     dem_arena_release(&p->arena);
     dem_candidates_release(&p->candidates);
     dem_samples_release(&p->samples);

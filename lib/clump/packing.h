@@ -4,6 +4,7 @@
 #define DEM_CLUMP_PACKING_H
 
 #include "base/clock.h"
+#include "base/crew.h"
 #include "base/random.h"
 #include "clump/pack_candidates.h"
 #include "clump/pack_kernels.h"
@@ -64,7 +65,7 @@ typedef struct dem_packing {
     const dem_ctx *ctx;
     const dem_pack_options *options;
     const dem_pack_kernels *kernels;
-    int threads;
+    dem_crew *crew;              ///< NULL: alone
     dem_random random;
     dem_pack_effort effort;
     const dem_pack_grain *grain;
