@@ -49,7 +49,7 @@ static void the_plain_sections_are_read(void **state)
         "'domain': {'min': [0, '-1 cm', null], 'max': [1, 2, null], 'periodic': [true, false, false],\n"
         " 'leaving': 'ignore'}, 'inlets': {}, 'bonds': [],\n"
         "'damping': {'local': 0.7, 'local_frame': 'vector', 'exclude_gravity': true, 'viscous': '3 1/s'},\n"
-        "'integrator': {'translation': 'central', 'rotation': 'lsym'}, 'contacts_between_clumps': 'merge',\n"
+        "'integrator': {'translation': 'taylor', 'rotation': 'no-squish'}, 'contacts_between_clumps': 'merge',\n"
         "'output': {'directory': 'here', 'frames': '5 ms', 'series': 1e-3, 'checkpoint': '2 min', 'energy': false}}");
     assert_string_equal(s.title, "sand");
     check_vec(s.gravity, v3(0, -9.81, -1), 2e-15);
@@ -59,6 +59,7 @@ static void the_plain_sections_are_read(void **state)
     check(s.domain.periodic[0] && !s.domain.periodic[1] && s.domain.leaving == DEM_LEAVING_IGNORE);
     check(s.damping.local == 0.7 && s.damping.local_frame == DEM_LOCAL_VECTOR && s.damping.exclude_gravity);
     check(s.damping.viscous == 3 && s.multiple == DEM_MULTIPLE_MERGE);
+    check(s.integrator.translation == DEM_TRANSLATION_TAYLOR && s.integrator.rotation == DEM_ROTATION_NO_SQUISH);
     assert_string_equal(s.output.directory, "here");
     check(s.output.frames == 5e-3 && s.output.series == 1e-3 && s.output.checkpoint == 120 && !s.output.energy);
     check(!s.output.checkpoint_wall);
@@ -76,12 +77,14 @@ static void every_key_of_a_law_is_read(void **state)
         " 'b': {'young': 1e9, 'poisson': 0.5}, 'c': {}}, 'contacts': [\n"
         "{'between': ['a', 'b'], 'effective_mass': 'body', 'normal': {'law': 'linear', 'stiffness_from': 'young',\n"
         " 'restitution': 0.5, 'restitution_mode': 'tension_allowed'},\n"
-        " 'friction': {'law': 'linear', 'stiffness': '1 kN/m', 'coefficient': 0.4, 'damping_rate': 7}},\n"
+        " 'friction': {'law': 'linear', 'stiffness': '1 kN/m', 'coefficient': 0.4, 'static_coefficient': 0.5, 'decay':\n"
+        " '3 s/mm', 'damping_rate': 7}},\n"
         "{'between': ['a', 'a'], 'effective_mass': 'local', 'normal': {'law': 'hertz', 'damping_rate': '5 Hz',\n"
         " 'restitution_mode': 'cut_corrected'},\n"
         " 'friction': {'law': 'mindlin', 'coefficient': 0, 'rescale': false}},\n"
         "{'between': ['b', 'b'], 'normal': {'stiffness': '1 MN/m', 'restitution': 1},\n"
-        " 'friction': {'coefficient': 1, 'stiffness_ratio': 0.5}},\n"
+        " 'friction': {'coefficient': 1, 'stiffness_ratio': 0.5}, 'cohesion': {'law': 'breakable', 'tension': '2 kN',\n"
+        " 'shear': 5, 'gap': '1 mm'}},\n"
         "{'between': ['c', 'c'], 'normal': {'stiffness': 1}, 'friction': null, 'rolling': null},\n"
         "{'between': ['a', 'c'], 'normal': {'stiffness': 1}, 'friction': {'coefficient': 1},\n"
         " 'rolling': {'law': 'epsd', 'coefficient': 0.1, 'stiffness': 3, 'damping': 0.2},\n"
@@ -97,10 +100,13 @@ static void every_key_of_a_law_is_read(void **state)
     check(l[0].normal == DEM_NORMAL_LINEAR && l[0].stiffness == 0 && l[0].damping == DEM_DAMPING_RESTITUTION);
     check(l[0].restitution == 0.5 && l[0].tail == DEM_TAIL_TENSION && l[0].friction == DEM_FRICTION_LINEAR);
     check(l[0].tangential_stiffness == 1000 && l[0].friction_coefficient == 0.4 && l[0].tangential_rate == 7);
+    check(l[0].static_coefficient == 0.5 && l[0].friction_decay == 3000 && isnan(l[1].static_coefficient));
     check(l[1].normal == DEM_NORMAL_HERTZ && l[1].damping == DEM_DAMPING_RATE && l[1].damping_rate == 5);
     check(l[1].tail == DEM_TAIL_CUT && l[1].friction == DEM_FRICTION_MINDLIN && !l[1].rescale);
     check(l[2].stiffness == 1e6 && l[2].damping == DEM_DAMPING_RESTITUTION && l[2].restitution == 1);
     check(l[2].friction == DEM_FRICTION_LINEAR && l[2].stiffness_ratio == 0.5 && isnan(l[2].tangential_stiffness));
+    check(l[2].cohesion == DEM_COHESION_BREAKABLE && l[2].bond_tension == 2000 && l[2].bond_shear == 5);
+    check(l[2].bonded == DEM_BONDED_AT_START && l[2].bond_gap == 1e-3);
     check(l[3].friction == DEM_FRICTION_NONE && l[3].damping == DEM_DAMPING_NONE);
     check(l[3].rolling == DEM_ROLLING_NONE && l[3].twisting == DEM_TWISTING_NONE);
     check(l[4].rolling == DEM_ROLLING_EPSD && l[4].rolling_coefficient == 0.1 && l[4].rolling_stiffness == 3);
@@ -201,6 +207,26 @@ static void a_body_has_its_values(void **state)
     check_near(b[1].scale, 0.2, 1e-16);
     check(b[1].orientation.w == 1 && b[1].velocity.x == 0 && b[1].spin.z == 0);
     check_close(b[2].scale, 1 / cbrt(13.5), 1e-13);
+    check(s.dimension == 3 && b[0].hold == 0 && b[2].hold == 0);
+    dem_scene_release(&s);
+}
+
+static void bodies_of_any_kind_can_be_held(void **state)
+{
+    (void)state;
+    dem_scene s = scene_of("{" SCENE_HEAD ", 'dimension': 2, 'bodies': [\n"
+                           "{'shape': 'ball', 'position': [0, 0, 0], 'fixed': true},\n"
+                           "{'shape': 'ball', 'position': [0, 0, 0], 'fixed': false, 'lock': 'ry'},\n"
+                           "{'shape': 'ball', 'position': [0, 0, 0], 'lock': ['x', 'y', 'z', 'rx', 'ry', 'rz']},\n"
+                           "{'shape': 'ball', 'position': [0, 0, 0], 'velocity': [1, 2, 3], 'prescribed': "
+                           "['velocity']},\n"
+                           "{'shape': 'ball', 'position': [0, 0, 0], 'spin': [1, 2, 3], 'prescribed': 'spin'},\n"
+                           "{'fill': {'mix': [{'shape': 'ball'}], 'box': [[0, 0, 0], [1, 1, 1]], 'count': 1},\n"
+                           " 'lock': ['x', 'rz']}]}");
+    const dem_body_def *b = s.bodies.bodies;
+    check(s.dimension == 2 && b[0].hold == (DEM_HOLD_VELOCITY | DEM_HOLD_SPIN) && b[1].hold == DEM_LOCK_RY);
+    check(b[2].hold == 63 && b[3].hold == DEM_HOLD_VELOCITY && b[4].hold == DEM_HOLD_SPIN);
+    check(s.bodies.fills[0].hold == (DEM_LOCK_X | DEM_LOCK_RZ));
     dem_scene_release(&s);
 }
 
@@ -393,6 +419,7 @@ int main(void)
         cmocka_unit_test(spheres_get_the_mass_and_frame_of_their_union),
         cmocka_unit_test(spheres_keep_a_mass_that_is_given),
         cmocka_unit_test(a_body_has_its_values),
+        cmocka_unit_test(bodies_of_any_kind_can_be_held),
         cmocka_unit_test(a_fill_has_its_values),
         cmocka_unit_test(walls_have_their_values),
         cmocka_unit_test(the_sample_of_the_design_reads_with_its_files),

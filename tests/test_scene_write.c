@@ -27,12 +27,15 @@ static void check_same_law(const dem_pair_law *a, const dem_pair_law *b)
     check(a->rolling_coefficient == b->rolling_coefficient && a->rolling_damping == b->rolling_damping);
     check(same(a->rolling_stiffness, b->rolling_stiffness) && a->twisting_coefficient == b->twisting_coefficient);
     check(a->cohesion == b->cohesion && a->energy_density == b->energy_density);
+    check(same(a->static_coefficient, b->static_coefficient) && a->friction_decay == b->friction_decay);
+    check(a->bond_tension == b->bond_tension && a->bond_shear == b->bond_shear && a->bonded == b->bonded);
+    check(a->bond_gap == b->bond_gap);
 }
 
 static void check_same_fill(const dem_fill_def *a, const dem_fill_def *b)
 {
     check(a->mix_count == b->mix_count && a->share_by_mass == b->share_by_mass && a->count == b->count);
-    check(a->void_ratio == b->void_ratio && a->gap == b->gap && a->seed == b->seed);
+    check(a->void_ratio == b->void_ratio && a->gap == b->gap && a->seed == b->seed && a->hold == b->hold);
     check_vec(a->low, b->low, 0);
     check_vec(a->high, b->high, 0);
     check_vec(a->velocity, b->velocity, 0);
@@ -50,10 +53,12 @@ static void check_same_fill(const dem_fill_def *a, const dem_fill_def *b)
 // compares what the text cannot: numbers in every bit, clumps, meshes
 static void check_same_scene(const dem_scene *a, const dem_scene *b)
 {
+    check(a->dimension == b->dimension);
     check(a->shape_count == b->shape_count && a->bodies.count == b->bodies.count && a->wall_count == b->wall_count);
     assert_memory_equal(&a->time, &b->time, sizeof a->time);
     assert_memory_equal(&a->domain, &b->domain, offsetof(dem_domain_def, periodic) + sizeof a->domain.periodic);
     check(a->domain.leaving == b->domain.leaving && a->multiple == b->multiple);
+    assert_memory_equal(&a->integrator, &b->integrator, sizeof a->integrator);
     assert_memory_equal(&a->gravity, &b->gravity, sizeof a->gravity);
     for (size_t i = 0; i < a->shape_count; i++) {
         check(a->shapes[i].sphere_radius == b->shapes[i].sphere_radius &&
@@ -68,7 +73,7 @@ static void check_same_scene(const dem_scene *a, const dem_scene *b)
         check_same_fill(&a->bodies.fills[i], &b->bodies.fills[i]);
     for (size_t i = 0; i < a->bodies.count; i++)
         assert_memory_equal(&a->bodies.bodies[i].scale, &b->bodies.bodies[i].scale,
-                            sizeof(dem_body_def) - offsetof(dem_body_def, scale));
+                            offsetof(dem_body_def, hold) + sizeof(uint32_t) - offsetof(dem_body_def, scale));
     for (size_t i = 0; i < a->wall_count; i++) {
         check(a->walls[i].kind == b->walls[i].kind && a->walls[i].material == b->walls[i].material);
         check_vec(a->walls[i].spin, b->walls[i].spin, 0);
@@ -103,7 +108,8 @@ static void a_resolved_scene_reads_back_as_the_same(void **state)
     check_round_trip("{'schema': 'dem-scene/1'}", NULL);
     check_round_trip(SCENE_SAMPLE, scene_folder());
     check_round_trip(
-        "{" SCENE_HEAD ", 'domain': {'min': [0, -1, null], 'max': [1.1, 1, null], 'periodic': [true, true, false]},\n"
+        "{" SCENE_HEAD
+        ", 'dimension': 2, 'domain': {'min': [0, -1, null], 'max': [1.1, 1, null], 'periodic': [true, true, false]},\n"
         "'time': {'end': 0.1, 'step': 1e-6, 'contact_steps': 0}, 'contacts_between_clumps': 'mean',\n"
         "'damping': {'local': 0.7, 'local_frame': 'vector', 'viscous': 1}, 'output': {'checkpoint': 3, 'energy': "
         "false},\n"
@@ -118,7 +124,10 @@ static void a_resolved_scene_reads_back_as_the_same(void **state)
         "  {'shape': 'pair', 'size': {'law': 'table', 'sizes': [1, 2, 3], 'passing': [0, 0.5, 1]}},\n"
         "  {'shape': 'pair', 'size': {'law': 'lognormal', 'median': 1, 'sigma': 0.1}}], 'share_by': 'mass',\n"
         "  'box': [[0, 0, 0], [1, 1, 1]], 'void_ratio': 0.7, 'seed': -3}},\n"
-        " {'shape': 'pair', 'position': [1, 2, 3], 'size': '12 mm'}]}",
+        " {'shape': 'pair', 'position': [1, 2, 3], 'size': '12 mm', 'fixed': true},\n"
+        " {'shape': 'pair', 'position': [1, 2, 3], 'velocity': [1, 2, 3], 'prescribed': 'velocity', 'lock': ['rx', "
+        "'rz']},\n"
+        " {'fill': {'mix': [{'shape': 'ball'}], 'box': [[0, 0, 0], [1, 1, 1]], 'count': 2}, 'lock': 'z'}]}",
         NULL);
     check_round_trip(
         "{'schema': 'dem-scene/1', 'materials': {'a': {'young': 1e9, 'poisson': 0.3}, 'b': {'density': 3,\n"
@@ -129,12 +138,14 @@ static void a_resolved_scene_reads_back_as_the_same(void **state)
         " 'friction': {'coefficient': 1, 'stiffness_ratio': 0.1, 'damping_rate': 0}},\n"
         "{'between': ['b', 'b'], 'normal': {'stiffness': 1}, 'rolling': {'law': 'constant', 'coefficient': 0.1},\n"
         " 'twisting': {'law': 'constant', 'coefficient': 0.7},\n"
-        " 'friction': {'coefficient': 1, 'stiffness': 0.1}},\n"
+        " 'friction': {'coefficient': 1, 'stiffness': 0.1, 'static_coefficient': 1.5, 'decay': 7},\n"
+        " 'cohesion': {'law': 'breakable', 'tension': 3, 'shear': 4, 'gap': 0.01}},\n"
         "{'between': ['c', 'c'], 'normal': {'law': 'dmt', 'work_of_adhesion': '50 mJ/m2'},\n"
         " 'rolling': {'law': 'epsd', 'coefficient': 0.1, 'damping': 0.7, 'stiffness': 5},\n"
         " 'twisting': {'law': 'marshall'}, 'cohesion': {'law': 'sjkr', 'energy_density': 7},\n"
         " 'friction': {'coefficient': 1}},\n"
-        "{'between': ['c', 'a'], 'normal': {'stiffness': 1}, 'rolling': {'law': 'bounded', 'coefficient': 0.1}}],\n"
+        "{'between': ['c', 'a'], 'normal': {'stiffness': 1}, 'rolling': {'law': 'bounded', 'coefficient': 0.1},\n"
+        " 'friction': {'coefficient': 1}, 'cohesion': {'law': 'breakable', 'tension': 3, 'shear': 4, 'bonded': 'at_touch'}}],\n"
         "'shapes': {'s': {'spheres': [[0, 0, 0, 1], [0.1, 0.7, 0.3, 0.6]], 'mass': 2, 'inertia': [1, 2, 3],\n"
         " 'material': 'a'}, 't': {'spheres': [[5, 0, 0, 1], [5.1, 0.7, 0.3, 0.6], [4, 0, 0, 0.3]],\n"
         " 'material': 'b'}}}",
@@ -180,6 +191,7 @@ static void every_default_is_written(void **state)
                                         "\"local_frame\": \"space\"",
                                         "\"exclude_gravity\": false",
                                         "\"translation\": \"central\"",
+                                        "\"dimension\": 3",
                                         "\"contacts_between_clumps\": \"sum\"",
                                         "\"directory\": \"out\"",
                                         "\"checkpoint\": 0",
@@ -212,8 +224,8 @@ static void a_scene_made_by_hand_is_written_too(void **state)
     const dem_shape_def shape = {.name = "s", .clump = clump};
     dem_pair_law law = dem_pair_law_defaults();
     law.stiffness = 5;
-    const dem_body_def bodies[] = {{0, 1, {1, 2, 3}, {1, 0, 0, 0}, {0, 0, 0}, {0, 0, 0}},
-                                   {0, 2, {4, 5, 6}, {1, 0, 0, 0}, {0, 0, 0}, {0, 0, 0}}};
+    const dem_body_def bodies[] = {{0, 1, {1, 2, 3}, {1, 0, 0, 0}, {0, 0, 0}, {0, 0, 0}, 0},
+                                   {0, 2, {4, 5, 6}, {1, 0, 0, 0}, {0, 0, 0}, {0, 0, 0}, DEM_LOCK_Z}};
     dem_wall_def wall = {.name = "w", .normal = {0, 0, 1}, .spin = {0, 0, 2}};
     dem_scene scene = dem_scene_defaults(), back;
     scene.materials = &material, scene.material_count = 1;

@@ -1,10 +1,10 @@
-/// Seconds that work takes.
+/// The clock on the wall, for telling how long things take.
 #ifndef DEM_BASE_CLOCK_H
 #define DEM_BASE_CLOCK_H
 
 #include "base/status.h"
 
-/// Seconds on a clock that only runs forwards.
+/// Seconds since some moment; never goes back.
 double dem_clock(void);
 
 enum { DEM_LAPS = 12 };

@@ -108,6 +108,26 @@ static dem_status write_directly(int file, const char *path, const dem_piece *pi
     return DEM_OK;
 }
 
+// A new file in the same folder, with the rights a new file has; its name is to be freed. Below 0: none, see errno.
+// mkstemp would make it unreadable for others, and the mask of rights cannot be read without being changed, for all
+// threads.
+static int open_beside(const char *path, char **name)
+{
+    enum { ATTEMPTS = 100 };
+    int file = -1;
+    *name = NULL;
+    for (unsigned i = 0; i < ATTEMPTS && file < 0 && (i == 0 || errno == EEXIST); i++) {
+        free(*name);
+        if (asprintf(name, "%s.%lx-%x", path, (long)getpid(), i) < 0) {
+            *name = NULL;
+            errno = ENOMEM;
+            return -1;
+        }
+        file = open(*name, O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
+    }
+    return file;
+}
+
 dem_status dem_file_write_pieces(const char *path, const dem_piece *pieces, size_t count, dem_error *error)
 {
     if (strcmp(path, "-") == 0)
@@ -123,19 +143,13 @@ dem_status dem_file_write_pieces(const char *path, const dem_piece *pieces, size
         return status;
     }
     char *beside;
-    if (asprintf(&beside, "%s.XXXXXX", path) < 0)
-        return dem_fail_memory(error);
-    dem_status status = DEM_OK;
-    int file = mkostemp(beside, O_CLOEXEC);
+    int file = open_beside(path, &beside);
     if (file < 0) {
-        status = cannot_write(error, path);
+        dem_status failed = cannot_write(error, path);
         free(beside);
-        return status;
+        return failed;
     }
-    mode_t mask = umask(0);
-    umask(mask);
-    fchmod(file, 0666 & ~mask);
-    status = write_directly(file, path, pieces, count, error);
+    dem_status status = write_directly(file, path, pieces, count, error);
     if (status == DEM_OK && fsync(file) != 0)
         status = cannot_write(error, path);
     if (close(file) != 0 && status == DEM_OK)

@@ -75,6 +75,15 @@ static const unit units[] = {
     {"kg m^2", DEM_DIMENSION_INERTIA, 1},
     {"1/s", DEM_DIMENSION_RATE, 1},
     {"Hz", DEM_DIMENSION_RATE, 1},
+    {"N", DEM_DIMENSION_FORCE, 1},
+    {"kN", DEM_DIMENSION_FORCE, 1e3},
+    {"MN", DEM_DIMENSION_FORCE, 1e6},
+    {"mN", DEM_DIMENSION_FORCE, 1e-3},
+    {"uN", DEM_DIMENSION_FORCE, 1e-6},
+    {"µN", DEM_DIMENSION_FORCE, 1e-6},
+    {"nN", DEM_DIMENSION_FORCE, 1e-9},
+    {"s/m", DEM_DIMENSION_SLOWNESS, 1},
+    {"s/mm", DEM_DIMENSION_SLOWNESS, 1e3},
 };
 enum { UNIT_COUNT = sizeof units / sizeof *units };
 
@@ -93,6 +102,8 @@ static const struct {
     [DEM_DIMENSION_MASS] = {"a mass", "5 g"},
     [DEM_DIMENSION_INERTIA] = {"a moment of inertia", "2e-9 kg m2"},
     [DEM_DIMENSION_RATE] = {"a rate", "100 1/s"},
+    [DEM_DIMENSION_FORCE] = {"a force", "5 kN"},
+    [DEM_DIMENSION_SLOWNESS] = {"an inverse velocity", "500 s/m"},
     [DEM_DIMENSION_NONE] = {"a number", "0.5"},
 };
 

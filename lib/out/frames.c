@@ -111,6 +111,7 @@ static dem_status begin(dem_frames *f, dem_error *error)
         DEM_TRY(remove_indexes(f, error));
     DEM_TRY(dem_pvd_open(f->directory, INDEX, f->def.resume, &f->index, error));
     DEM_TRY(dem_pvd_open(f->directory, WALLS, f->def.resume, &f->walls, error));
+    f->index.queue = f->walls.queue = f->def.queue;
     DEM_TRY(remove_frames(f, "frames", f->index.count, error));
     DEM_TRY(remove_frames(f, "walls", f->index.count, error));
     return write_shapes(f, error);
@@ -148,7 +149,8 @@ void dem_frames_close(dem_frames *f)
 
 // ---- bodies
 
-static dem_status write_bodies(const char *path, double time, const dem_body_view *b, dem_error *error)
+static dem_status write_bodies(dem_file_queue *queue, const char *path, double time, const dem_body_view *b,
+                               dem_error *error)
 {
     float *turns = dem_alloc(b->count, 4 * sizeof *turns);
     uint32_t *ids = dem_alloc(b->count, sizeof *ids);
@@ -165,7 +167,7 @@ static dem_status write_bodies(const char *path, double time, const dem_body_vie
         {"velocity", DEM_VTP_FLOAT64, 3, b->velocity}, {"angular_velocity", DEM_VTP_FLOAT64, 3, b->spin},
         {"mass", DEM_VTP_FLOAT64, 1, b->mass},         {"coordination", DEM_VTP_UINT32, 1, b->coordination}};
     if (status == DEM_OK)
-        status = dem_vtp_write(path,
+        status = dem_vtp_queue(queue, path,
                                &(dem_vtp){.time = time,
                                           .points = b->position,
                                           .point_count = b->count,
@@ -243,7 +245,7 @@ static dem_status write_wall_file(const dem_frames *f, const char *name, double 
     dem_status status = path ? gather_walls(f, moving, poses, box, &all, error) : dem_fail_memory(error);
     const dem_vtp_array array = {"wall", DEM_VTP_INT32, 1, all.numbers};
     if (status == DEM_OK)
-        status = dem_vtp_write(path,
+        status = dem_vtp_queue(f->def.queue, path,
                                &(dem_vtp){.time = moving ? time : NAN,
                                           .points = all.mesh.vertices,
                                           .point_count = all.mesh.vertex_count,
@@ -280,7 +282,7 @@ dem_status dem_frames_write(dem_frames *f, double time, const dem_body_view *bod
     char name[32];
     snprintf(name, sizeof name, "frames/%06zu.vtp", f->index.count);
     char *path = dem_path_join(f->directory, "%s", name);
-    dem_status status = path ? write_bodies(path, time, bodies, error) : dem_fail_memory(error);
+    dem_status status = path ? write_bodies(f->def.queue, path, time, bodies, error) : dem_fail_memory(error);
     if (status == DEM_OK)
         status = write_walls(f, time, bodies, walls, error);
     if (status == DEM_OK)

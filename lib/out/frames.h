@@ -10,7 +10,7 @@
 #ifndef DEM_OUT_FRAMES_H
 #define DEM_OUT_FRAMES_H
 
-#include "base/status.h"
+#include "base/file_queue.h"
 #include "dem/scene.h"
 #include "dem/world.h"
 
@@ -23,6 +23,7 @@ typedef struct dem_frames_def {
     const dem_wall_def *walls;
     size_t wall_count;
     dem_domain_def domain;  ///< walls without an end are cut there
+    dem_file_queue *queue;  ///< writes the frames behind the caller's back; NULL: at once
     double resume;          ///< [s]: frames up to this time stay; NAN: a new run, no earlier frame stays
 } dem_frames_def;
 

@@ -100,7 +100,7 @@ static dem_status write_index(const dem_pvd *index, dem_error *error)
                 dem_buffer_print(&out, "%s%d%s%s%s", PART, part, NAMED, index->entries[i].files[part], CLOSE);
             }
     dem_buffer_text(&out, TAIL);
-    return dem_file_write_buffer(index->path, &out, error);
+    return dem_file_queue_put(index->queue, index->path, &out, error);
 }
 
 dem_status dem_pvd_add(dem_pvd *index, double time, const char *file, const char *other, dem_error *error)

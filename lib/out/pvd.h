@@ -2,7 +2,7 @@
 #ifndef DEM_OUT_PVD_H
 #define DEM_OUT_PVD_H
 
-#include "base/status.h"
+#include "base/file_queue.h"
 
 enum { DEM_PVD_PARTS = 2 };
 
@@ -14,6 +14,7 @@ typedef struct dem_pvd_entry {
 
 typedef struct dem_pvd {
     char *path;
+    dem_file_queue *queue;  ///< borrowed, to be set by the caller; NULL: writes at once
     dem_pvd_entry *entries;
     size_t count, capacity;
 } dem_pvd;

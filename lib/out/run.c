@@ -11,6 +11,7 @@
 #include "out/checkpoint.h"
 #include "out/final.h"
 #include "out/frames.h"
+#include "out/network.h"
 #include "out/series.h"
 #include "sim/diagnose.h"
 #include "sim/state.h"
@@ -26,12 +27,14 @@ typedef struct runner {
     dem_run_result *result;
     dem_world *w;
     dem_frames *frames;
+    dem_file_queue *queue;  // of the frames
     dem_series *series;
+    dem_network *network;
     const dem_clump **clumps;  // of the shapes, as the world runs them
     char sha[65];
     double end;                                       // [s]
     uint64_t last_step;                               // 0: by time
-    double next_frame, next_series, next_checkpoint;  // [s]; the last by either clock
+    double next_frame, next_series, next_network, next_checkpoint;  // [s]; the last by either clock
     double started, diagnosed;                        // by the wall's clock
     double output_seconds, timed_since;
     uint64_t timed_from;     // step
@@ -61,13 +64,25 @@ static dem_status write_row(runner *r, dem_error *error)
 {
     size_t count;
     DEM_TRY(measure(r, error));
-    return dem_series_write(r->series, dem_world_figures(r->w), dem_world_walls(r->w, &count), error);
+    return dem_series_write(r->series, dem_world_figures(r->w), dem_world_walls(r->w, &count),
+                            dem_world_measures(r->w, &count), error);
+}
+
+static dem_status write_network(runner *r, dem_error *error)
+{
+    size_t count;
+    DEM_TRY(measure(r, error));
+    dem_body_view bodies = dem_world_bodies(r->w);
+    const dem_contact *contacts = dem_world_contacts(r->w, &count);
+    return dem_network_write(r->network, dem_world_time(r->w), &bodies, contacts, count, error);
 }
 
 static dem_status write_checkpoint(runner *r, dem_error *error)
 {
     void *bytes;
     size_t size;
+    // a checkpoint counts the frames that are there
+    DEM_TRY(dem_file_queue_wait(r->queue, error));
     DEM_TRY(dem_world_save(r->w, &bytes, &size, error));
     dem_checkpoint c = {.title = r->scene->title,
                         .time = dem_world_time(r->w),
@@ -117,6 +132,10 @@ static dem_status do_events(runner *r, dem_error *error)
         DEM_TRY(write_row(r, error));
         r->next_series = next_multiple(t, o->series);
     }
+    if (r->network && due(r, r->next_network)) {
+        DEM_TRY(write_network(r, error));
+        r->next_network = next_multiple(t, o->contacts);
+    }
     if (o->checkpoint > 0 && wall_or_time(r) >= r->next_checkpoint - EVENT_TOLERANCE * dem_world_step_size(r->w)) {
         DEM_TRY(write_checkpoint(r, error));
         r->next_checkpoint = next_multiple(wall_or_time(r), o->checkpoint);
@@ -138,6 +157,8 @@ static uint64_t steps_ahead(const runner *r, double steps_per_second)
         next = fmin(next, r->next_frame);
     if (r->series)
         next = fmin(next, r->next_series);
+    if (r->network)
+        next = fmin(next, r->next_network);
     if (r->scene->output.checkpoint > 0 && !r->scene->output.checkpoint_wall)
         next = fmin(next, r->next_checkpoint);
     double n = fmin(ceil((next - t) / h - EVENT_TOLERANCE), fmax(steps_per_second * LOOK_EVERY, 1));
@@ -245,6 +266,7 @@ static dem_status name_scene(runner *r, dem_error *error)
     bare.output = defaults.output;
     bare.time.end = NAN;
     bare.title = NULL;
+    bare.measure_count = 0;
     DEM_TRY(dem_scene_resolved(&bare, &text, error));
     dem_sha256(text, strlen(text), r->sha);
     free(text);
@@ -278,15 +300,22 @@ static dem_status open_outputs(runner *r, double resume, dem_error *error)
             return dem_fail_memory(error);
         for (uint32_t i = 0; i < r->scene->shape_count; i++)
             r->clumps[i] = dem_world_clump(r->w, i);
+        DEM_TRY(dem_file_queue_create(&r->queue, error));
         dem_frames_def def = {o->directory,    r->scene->shapes,     r->clumps,        r->scene->shape_count,
-                              r->scene->walls, r->scene->wall_count, r->scene->domain, resume};
+                              r->scene->walls, r->scene->wall_count, r->scene->domain, r->queue,
+                              resume};
         DEM_TRY(dem_frames_open(&def, &r->frames, error));
     }
     if (o->series > 0)
-        DEM_TRY(dem_series_open(o->directory, r->scene->walls, r->scene->wall_count, resume, &r->series, error));
+        DEM_TRY(dem_series_open(&(dem_series_def){o->directory, r->scene->walls, r->scene->wall_count,
+                                                  r->scene->measures, r->scene->measure_count},
+                                resume, &r->series, error));
+    if (o->contacts > 0)
+        DEM_TRY(dem_network_open(o->directory, &r->scene->domain, resume, &r->network, error));
     double t = isnan(resume) ? -1 : resume + EVENT_TOLERANCE * dem_world_step_size(r->w);
     r->next_frame = o->frames > 0 && t >= 0 ? next_multiple(t, o->frames) : 0;
     r->next_series = o->series > 0 && t >= 0 ? next_multiple(t, o->series) : 0;
+    r->next_network = o->contacts > 0 && t >= 0 ? next_multiple(t, o->contacts) : 0;
     r->next_checkpoint = o->checkpoint > 0 ? next_multiple(fmax(wall_or_time(r), 0), o->checkpoint) : 0;
     return DEM_OK;
 }
@@ -299,6 +328,7 @@ static dem_status finish(runner *r, dem_error *error)
     dem_body_view bodies = dem_world_bodies(r->w);
     DEM_TRY(
         dem_final_write(r->ctx, r->scene->output.directory, r->scene->shapes, r->scene->shape_count, &bodies, error));
+    DEM_TRY(dem_file_queue_wait(r->queue, error));
     r->output_seconds += dem_clock() - begin;
     return DEM_OK;
 }
@@ -369,7 +399,9 @@ dem_status dem_run(const dem_ctx *ctx, const dem_scene *scene, const dem_run_opt
         status = status == DEM_OK ? concluded : status;
     }
     dem_frames_close(r.frames);
+    dem_file_queue_destroy(r.queue);
     dem_series_close(r.series);
+    dem_network_close(r.network);
     free(r.clumps);
     dem_world_destroy(r.w);
     return status;

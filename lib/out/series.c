@@ -15,7 +15,7 @@ struct dem_series {
     char *path;
     int file;
     size_t size;  // bytes of whole rows
-    size_t rows, wall_count;
+    size_t rows, wall_count, measure_count;
 };
 
 // ---- columns
@@ -37,6 +37,7 @@ static const struct {
     COLUMN(NUMBER, "elastic_J", energy.elastic),
     COLUMN(NUMBER, "friction_J", energy.friction),
     COLUMN(NUMBER, "viscous_J", energy.viscous),
+    COLUMN(NUMBER, "broken_J", energy.broken),
     COLUMN(NUMBER, "local_J", energy.local),
     COLUMN(NUMBER, "drag_J", energy.drag),
     COLUMN(NUMBER, "work_J", energy.work),
@@ -53,26 +54,80 @@ static const struct {
 };
 enum { COLUMNS = sizeof columns / sizeof *columns };
 
-static dem_status put_head(dem_buffer *out, const dem_wall_def *walls, size_t count, dem_error *error)
+// of a region
+static const struct {
+    const char *name;
+    size_t at;
+    bool count;
+} measures[] = {
+#define COLUMN(name, field, count)                                                                                     \
+    {                                                                                                                  \
+        name, offsetof(dem_measure_view, field), count                                                                 \
+    }
+    COLUMN("stress_xx_Pa", stress.xx, false),
+    COLUMN("stress_yy_Pa", stress.yy, false),
+    COLUMN("stress_zz_Pa", stress.zz, false),
+    COLUMN("stress_xy_Pa", stress.xy, false),
+    COLUMN("stress_xz_Pa", stress.xz, false),
+    COLUMN("stress_yz_Pa", stress.yz, false),
+    COLUMN("p_Pa", mean_stress, false),
+    COLUMN("q_Pa", deviatoric_stress, false),
+    COLUMN("fabric_xx", fabric.xx, false),
+    COLUMN("fabric_yy", fabric.yy, false),
+    COLUMN("fabric_zz", fabric.zz, false),
+    COLUMN("fabric_xy", fabric.xy, false),
+    COLUMN("fabric_xz", fabric.xz, false),
+    COLUMN("fabric_yz", fabric.yz, false),
+    COLUMN("void_ratio", void_ratio, false),
+    COLUMN("coordination", coordination, false),
+    COLUMN("volume_m3", volume, false),
+    COLUMN("solid_m3", solid_volume, false),
+    COLUMN("bodies", bodies, true),
+    COLUMN("contacts", contacts, true),
+#undef COLUMN
+};
+enum { MEASURE_COLUMNS = sizeof measures / sizeof *measures };
+
+static dem_status put_head(dem_buffer *out, const dem_series_def *def, dem_error *error)
 {
     static const char *const parts[] = {"fx_N", "fy_N", "fz_N", "mx_Nm", "my_Nm", "mz_Nm"};
-    dem_plain_name *names = dem_alloc(count, sizeof *names);
+    size_t count = def->wall_count;
+    dem_plain_name *names = dem_alloc(count + def->measure_count, sizeof *names);
     if (!names)
         return dem_fail_memory(error);
     for (size_t i = 0; i < COLUMNS; i++)
         dem_buffer_print(out, "%s%s", i ? "," : "", columns[i].name);
     for (size_t i = 0; i < count; i++) {
-        names[i] = dem_name_plain(walls[i].name, "wall", names, i);
+        names[i] = dem_name_plain(def->walls[i].name, "wall", names, i);
         for (int k = 0; k < 6; k++)
             dem_buffer_print(out, ",%s_%s", names[i].text, parts[k]);
+    }
+    for (size_t i = 0; i < def->measure_count; i++) {
+        names[count + i] = dem_name_plain(def->measures[i].name, "region", names, count + i);
+        for (int k = 0; k < MEASURE_COLUMNS; k++)
+            dem_buffer_print(out, ",%s_%s", names[count + i].text, measures[k].name);
     }
     dem_buffer_text(out, "\n");
     free(names);
     return out->failed ? dem_fail_memory(error) : DEM_OK;
 }
 
-static void put_row(dem_buffer *out, const dem_figures *figures, const dem_wall_view *walls, size_t count)
+static void put_measure(dem_buffer *out, const dem_measure_view *view)
 {
+    for (int k = 0; k < MEASURE_COLUMNS; k++) {
+        const char *value = (const char *)view + measures[k].at;
+        dem_buffer_text(out, ",");
+        if (measures[k].count)
+            dem_buffer_print(out, "%zu", *(const size_t *)value);
+        else
+            dem_buffer_shortest(out, *(const double *)value);
+    }
+}
+
+static void put_row(dem_buffer *out, const dem_series *s, const dem_figures *figures, const dem_wall_view *walls,
+                    const dem_measure_view *views)
+{
+    size_t count = s->wall_count;
     for (size_t i = 0; i < COLUMNS; i++) {
         const char *value = (const char *)figures + columns[i].at;
         if (i)
@@ -92,6 +147,8 @@ static void put_row(dem_buffer *out, const dem_figures *figures, const dem_wall_
             dem_buffer_shortest(out, parts[k]);
         }
     }
+    for (size_t i = 0; i < s->measure_count; i++)
+        put_measure(out, &views[i]);
     dem_buffer_text(out, "\n");
 }
 
@@ -140,17 +197,19 @@ static dem_status begin(dem_series *s, const dem_buffer *head, double resume, de
     return DEM_OK;
 }
 
-dem_status dem_series_open(const char *directory, const dem_wall_def *walls, size_t wall_count, double resume,
-                           dem_series **series, dem_error *error)
+dem_status dem_series_open(const dem_series_def *def, double resume, dem_series **series, dem_error *error)
 {
     dem_buffer head = {0};
     dem_series *s = *series = dem_alloc_zero(1, sizeof *s);
     if (!s)
         return dem_fail_memory(error);
-    *s = (dem_series){.path = dem_path_join(directory, "series.csv"), .file = -1, .wall_count = wall_count};
-    dem_status status = s->path ? dem_folder_create(directory, error) : dem_fail_memory(error);
+    *s = (dem_series){.path = dem_path_join(def->directory, "series.csv"),
+                      .file = -1,
+                      .wall_count = def->wall_count,
+                      .measure_count = def->measure_count};
+    dem_status status = s->path ? dem_folder_create(def->directory, error) : dem_fail_memory(error);
     if (status == DEM_OK)
-        status = put_head(&head, walls, wall_count, error);
+        status = put_head(&head, def, error);
     if (status == DEM_OK)
         status = begin(s, &head, resume, error);
     dem_buffer_release(&head);
@@ -180,10 +239,11 @@ static dem_status append(dem_series *s, const dem_buffer *row, dem_error *error)
     return DEM_OK;
 }
 
-dem_status dem_series_write(dem_series *s, const dem_figures *figures, const dem_wall_view *walls, dem_error *error)
+dem_status dem_series_write(dem_series *s, const dem_figures *figures, const dem_wall_view *walls,
+                            const dem_measure_view *views, dem_error *error)
 {
     dem_buffer row = {0};
-    put_row(&row, figures, walls, s->wall_count);
+    put_row(&row, s, figures, walls, views);
     dem_status status = row.failed ? dem_fail_memory(error) : append(s, &row, error);
     dem_buffer_release(&row);
     return status;

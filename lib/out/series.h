@@ -9,16 +9,24 @@
 
 typedef struct dem_series dem_series;
 
+/// What the columns behind those of the whole stand for; borrowed while it is opened.
+typedef struct dem_series_def {
+    const char *directory;
+    const dem_wall_def *walls;  ///< six columns each: what the bodies do to it
+    size_t wall_count;
+    const dem_measure_def *measures;  ///< see dem_measure_view
+    size_t measure_count;
+} dem_series_def;
+
 /// Begins the table; with a time in `resume` [s] (NAN: a new run) it goes on with the one that is there, from which the
 /// rows behind that time are cut. A row that is due at the time of a checkpoint must be written before it. Makes the
 /// folder. Errors: DEM_CANNOT_WRITE, DEM_NO_MEMORY; DEM_BAD_INPUT for a table to go on with that has other columns.
-dem_status dem_series_open(const char *directory, const dem_wall_def *walls, size_t wall_count, double resume,
-                           dem_series **series, dem_error *error);
+dem_status dem_series_open(const dem_series_def *def, double resume, dem_series **series, dem_error *error);
 
 /// Appends a row, which is in the file when this returns; a row that cannot be written leaves no part of itself.
-/// `walls` [wall_count]. Errors: DEM_CANNOT_WRITE, DEM_NO_MEMORY.
+/// `walls` [wall_count], `measures` [measure_count]. Errors: DEM_CANNOT_WRITE, DEM_NO_MEMORY.
 dem_status dem_series_write(dem_series *series, const dem_figures *figures, const dem_wall_view *walls,
-                            dem_error *error);
+                            const dem_measure_view *measures, dem_error *error);
 
 /// How many there are, with those that stayed.
 size_t dem_series_rows(const dem_series *series);

@@ -4,8 +4,6 @@
 
 #include <math.h>
 
-#include "base/file.h"
-
 enum { CHUNK = 1024 };  // numbers of cells that are made at a time
 
 typedef struct writer {
@@ -129,9 +127,14 @@ void dem_vtp_put(dem_buffer *out, const dem_vtp *vtp)
     dem_buffer_text(out, "\n</AppendedData>\n</VTKFile>\n");
 }
 
-dem_status dem_vtp_write(const char *path, const dem_vtp *vtp, dem_error *error)
+dem_status dem_vtp_queue(dem_file_queue *queue, const char *path, const dem_vtp *vtp, dem_error *error)
 {
     dem_buffer out = {0};
     dem_vtp_put(&out, vtp);
-    return dem_file_write_buffer(path, &out, error);
+    return dem_file_queue_put(queue, path, &out, error);
+}
+
+dem_status dem_vtp_write(const char *path, const dem_vtp *vtp, dem_error *error)
+{
+    return dem_vtp_queue(NULL, path, vtp, error);
 }

@@ -2,7 +2,7 @@
 #ifndef DEM_OUT_VTP_H
 #define DEM_OUT_VTP_H
 
-#include "base/text.h"
+#include "base/file_queue.h"
 #include "dem/base.h"
 
 typedef enum dem_vtp_type {
@@ -52,7 +52,9 @@ typedef struct dem_vtp {
 /// Appends the file.
 void dem_vtp_put(dem_buffer *out, const dem_vtp *vtp);
 
-/// Writes the file whole or not at all. Errors: DEM_CANNOT_WRITE, DEM_NO_MEMORY.
+/// Writes the file whole or not at all, behind the caller's back where there is a queue (NULL: at once).
+/// Errors: DEM_CANNOT_WRITE, DEM_NO_MEMORY.
+dem_status dem_vtp_queue(dem_file_queue *queue, const char *path, const dem_vtp *vtp, dem_error *error);
 dem_status dem_vtp_write(const char *path, const dem_vtp *vtp, dem_error *error);
 
 #endif

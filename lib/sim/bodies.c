@@ -83,7 +83,7 @@ static dem_status order_bodies(const dem_world *w, const dem_body_def *defs, dem
     return DEM_OK;
 }
 
-static void put_inertia(const dem_world *w, size_t row, const dem_template *t, double scale)
+static void put_inertia(const dem_world *w, size_t row, const dem_template *t, double scale, uint32_t hold)
 {
     double *inertia = w->bodies.inertia + DEM_ROW * row, cube = scale * scale * scale, fifth = cube * scale * scale;
     inertia[0] = 1 / (t->mass * cube);
@@ -93,29 +93,54 @@ static void put_inertia(const dem_world *w, size_t row, const dem_template *t, d
     inertia[5] = t->mass * cube;
     inertia[6] = 1 / (t->least_mass * cube);
     inertia[7] = t->isotropic;
+    if (!hold)
+        return;
+    // a held body is a wall to the others
+    double turning = hold_turns(hold) ? 0 : inertia[6] - inertia[0];
+    if (hold_moves(hold)) {
+        inertia[0] *= DEM_AS_GOOD_AS_NONE;
+        inertia[5] = 0;
+    }
+    for (int k = 1; hold_turns(hold) && k < 4; k++)
+        inertia[k] *= DEM_AS_GOOD_AS_NONE;
+    inertia[6] = inertia[0] + turning;
+}
+
+// of what is held there is none: only what contacts add in a step
+static void put_momentum(dem_world *w, size_t row, dem_quat q, dem_vec3 velocity, dem_vec3 spin)
+{
+    dem_bodies *b = &w->bodies;
+    double *momentum = b->momentum + DEM_ROW * row, m = body_mass(w, row);
+    const double *inverse = b->inertia + DEM_ROW * row + 1;
+    dem_vec3 own = quat_unrotate(q, spin);
+    dem_vec3 l = quat_rotate(q, v3(own.x / inverse[0], own.y / inverse[1], own.z / inverse[2]));
+    if (!(body_hold(b, row) & DEM_HOLD_VELOCITY))
+        memcpy(momentum, (double[]){m * velocity.x, m * velocity.y, m * velocity.z}, 3 * sizeof *momentum);
+    if (!(body_hold(b, row) & DEM_HOLD_SPIN))
+        memcpy(momentum + 3, (double[]){l.x, l.y, l.z}, 3 * sizeof *momentum);
 }
 
 static void put_body(dem_world *w, size_t row, const dem_body_def *def)
 {
     dem_bodies *b = &w->bodies;
     const dem_template *t = &w->templates.items[def->shape];
-    double *pose = body_pose(b, row), *motion = pose + 8, *momentum = b->momentum + DEM_ROW * row;
+    double *pose = body_pose(b, row), *motion = pose + 8;
     b->shape[row] = def->shape;
     b->radius[row] = t->radius_out * def->scale;
-    put_inertia(w, row, t, def->scale);
+    put_inertia(w, row, t, def->scale, def->hold);
+    if (b->hold)
+        b->hold[row] = def->hold;
+    dem_vec3 velocity = unlocked_velocity(def->velocity, def->hold), spin = unlocked_spin(def->spin, def->hold);
+    if (b->kept)
+        memcpy(b->kept + 6 * row, (double[]){velocity.x, velocity.y, velocity.z, spin.x, spin.y, spin.z},
+               6 * sizeof *b->kept);
     dem_quat q = template_run_orientation(t, quat_unit(def->orientation));
     memcpy(pose, (double[]){def->position.x, def->position.y, def->position.z, q.w, q.x, q.y, q.z, def->scale},
            8 * sizeof *pose);
     memcpy(motion,
-           (double[]){def->velocity.x, def->velocity.y, def->velocity.z, def->spin.x, def->spin.y, def->spin.z,
-                      b->inertia[DEM_ROW * row]},
+           (double[]){velocity.x, velocity.y, velocity.z, spin.x, spin.y, spin.z, b->inertia[DEM_ROW * row]},
            7 * sizeof *motion);
-    dem_vec3 own = quat_unrotate(q, def->spin);
-    const double *inverse = b->inertia + DEM_ROW * row + 1;
-    dem_vec3 l = quat_rotate(q, v3(own.x / inverse[0], own.y / inverse[1], own.z / inverse[2]));
-    double m = b->inertia[DEM_ROW * row + 5];
-    memcpy(momentum, (double[]){m * def->velocity.x, m * def->velocity.y, m * def->velocity.z, l.x, l.y, l.z},
-           6 * sizeof *momentum);
+    put_momentum(w, row, q, velocity, spin);
     b->limit[row] = -1;
     b->path_then[row] = -INFINITY;  // a search is due, however wide the skin
     if (b->strain_limit)
@@ -203,6 +228,13 @@ dem_vec3 dem_body_spin(const dem_bodies *b, size_t row, dem_vec3 momentum)
     dem_quat q = body_orientation(b, row);
     dem_vec3 own = quat_unrotate(q, momentum);
     return quat_rotate(q, v3(own.x * inverse[0], own.y * inverse[1], own.z * inverse[2]));
+}
+
+double dem_body_turning_energy(const dem_bodies *b, size_t row, dem_vec3 spin)
+{
+    const double *inverse = b->inertia + DEM_ROW * row + 1;
+    dem_vec3 own = quat_unrotate(body_orientation(b, row), spin);
+    return (own.x * own.x / inverse[0] + own.y * own.y / inverse[1] + own.z * own.z / inverse[2]) / 2;
 }
 
 double dem_bodies_bytes(const dem_world *w)

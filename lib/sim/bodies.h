@@ -18,6 +18,9 @@ void dem_bodies_wrap(dem_world *world, int32_t *moved);
 /// The angular velocity of a body in space for its angular momentum and orientation [rad/s].
 dem_vec3 dem_body_spin(const dem_bodies *bodies, size_t row, dem_vec3 momentum);
 
+/// Of rotation [J].
+double dem_body_turning_energy(const dem_bodies *bodies, size_t row, dem_vec3 spin);
+
 /// Memory of the columns by body [B].
 double dem_bodies_bytes(const dem_world *world);
 

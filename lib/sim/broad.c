@@ -282,6 +282,8 @@ static bool make_room(void *array, size_t *capacity, size_t count, size_t size)
 
 static bool add_near(search *s, uint32_t a, uint32_t b, uint32_t image)
 {
+    if (hold_whole(body_hold(&s->w->bodies, a)) && hold_whole(body_hold(&s->w->bodies, b)))
+        return true;  // contacts can do nothing to either
     if (!dem_grow(&s->near, &s->near_capacity, s->near_count, sizeof *s->near))
         return false;
     s->near[s->near_count++] = (near_pair){a, b, image};

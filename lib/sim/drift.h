@@ -218,6 +218,24 @@ DEM_INLINE void damp(const dem_motion_job *job, const wide before[8], const wide
     }
 }
 
+/// Takes the damping back of what is held: nothing slows that. Of one body, as all that other schemes and held bodies
+/// do.
+DEM_INLINE void spare_held(const dem_motion_job *job, size_t row, wide momentum[8], damping *d)
+{
+    uint32_t hold = job->hold[row];
+    for (int k = 0; k < 2; k++) {
+        if (!(hold & (k ? DEM_HOLD_SPIN : DEM_HOLD_VELOCITY)))
+            continue;
+        wide3 *parts[2] = {&d->local[k], &d->drag[k]};
+        for (int i = 0; i < 2; i++) {
+            momentum[3 * k] = momentum[3 * k] - parts[i]->x;
+            momentum[3 * k + 1] = momentum[3 * k + 1] - parts[i]->y;
+            momentum[3 * k + 2] = momentum[3 * k + 2] - parts[i]->z;
+            *parts[i] = scale3(*parts[i], wide_all(0));
+        }
+    }
+}
+
 /// Rolling resistance that contacts bound (Irazabal, Salazar & Onate 2017): takes what it may of the angular momentum,
 /// at most all of it, so that it never turns a spin round. Returns the impulse.
 DEM_INLINE wide3 hold_spin(wide momentum[8])
@@ -253,7 +271,28 @@ DEM_INLINE void note_strained(dem_motion_job *job, size_t i, wide strain)
     }
 }
 
-DEM_INLINE void move_bodies(const dem_rows *rows, dem_motion_job *job, const bool damped, const bool bounded)
+/// Takes the rows of one batch from their momenta to the next pose and velocity, with `was` the motion before.
+typedef void motion_advance(const dem_motion_job *job, size_t row, const wide was[8], const wide inertia[8],
+                            wide pose[8], wide motion[8], wide momentum[8]);
+
+// the default: central differences, lsym
+DEM_INLINE void advance_central(const dem_motion_job *job, const wide inertia[8], wide pose[8], wide motion[8],
+                                const wide momentum[8])
+{
+    wide step = wide_all(job->step);
+    for (int k = 0; k < 3; k++) {
+        motion[k] = momentum[k] * inertia[0];
+        pose[k] = wide_fma(step, motion[k], pose[k]);
+    }
+    wide3 spin = drift(pose + 3, (wide3){momentum[3], momentum[4], momentum[5]}, inertia, step);
+    motion[3] = spin.x;
+    motion[4] = spin.y;
+    motion[5] = spin.z;
+}
+
+/// `other`: how to move on, where that is not the default; the kernels know only that one.
+DEM_INLINE void move_bodies(const dem_rows *rows, dem_motion_job *job, const bool damped, const bool bounded,
+                            motion_advance *const other)
 {
     wide step = wide_all(job->step);
     for (size_t i = job->begin; i < job->end; i += DEM_WIDTH) {
@@ -267,35 +306,35 @@ DEM_INLINE void move_bodies(const dem_rows *rows, dem_motion_job *job, const boo
                         kick * wide_all(job->gravity[2])};
         damping d;
         wide3 held[2] = {{wide_all(0), wide_all(0), wide_all(0)}};
-        if (damped || bounded)
+        if (damped || bounded || other)
             rows_load_next(body + 8, DEM_BODY_ROW, was);
         if (damped) {
             wide before[8];
             rows_load_next(job->before + DEM_ROW * i, DEM_ROW, before);
             damp(job, before, was, weight, momentum, &d);
+            if (other && job->hold)
+                spare_held(job, i, momentum, &d);
         }
+        if (bounded && other && job->hold && job->hold[i] & DEM_HOLD_SPIN)
+            momentum[7] = wide_all(0);
         if (bounded)
             held[1] = hold_spin(momentum);
         momentum[0] = momentum[0] + weight.x;
         momentum[1] = momentum[1] + weight.y;
         momentum[2] = momentum[2] + weight.z;
-        for (int k = 0; k < 3; k++) {
-            motion[k] = momentum[k] * inertia[0];
-            pose[k] = wide_fma(step, motion[k], pose[k]);
-        }
-        wide3 spin = drift(pose + 3, (wide3){momentum[3], momentum[4], momentum[5]}, inertia, step);
+        if (other)
+            other(job, i, was, inertia, pose, motion, momentum);
+        else
+            advance_central(job, inertia, pose, motion, momentum);
         // to the first order: what a step adds to |q| - 1 is of the last bits
         wide norm = wide_all(1.5) -
                     wide_all(0.5) * (pose[3] * pose[3] + pose[4] * pose[4] + pose[5] * pose[5] + pose[6] * pose[6]);
         for (int k = 3; k < 7; k++)
             pose[k] = pose[k] * norm;
-        motion[3] = spin.x;
-        motion[4] = spin.y;
-        motion[5] = spin.z;
         motion[6] = inertia[0];
         motion[7] = inertia[6];
+        wide3 v = {motion[0], motion[1], motion[2]}, spin = {motion[3], motion[4], motion[5]};
         wide turning = dot3(spin, spin) * (inertia[4] * inertia[4]);
-        wide3 v = {motion[0], motion[1], motion[2]};
         wide speed2 = dot3(v, v) + turning;
         wide path = wide_fma(step, wide_sqrt(speed2 + speed2), wide_load(job->path + i));
         wide_store(job->path + i, path);

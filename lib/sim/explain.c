@@ -6,6 +6,7 @@
 #include "base/text.h"
 #include "sim/bodies.h"
 #include "sim/contacts.h"
+#include "sim/schemes.h"
 #include "sim/timestep.h"
 
 static const char *const instruction_sets[][2] = {{"v4", "AVX-512"}, {"v3", "AVX2"}, {"plain", "plain C"}};
@@ -67,6 +68,49 @@ static size_t count_walls(const dem_world *w, dem_wall_form form)
     return count;
 }
 
+static void put_held(dem_buffer *out, const dem_world *w)
+{
+    size_t given = 0, locked = 0, plane = 0;
+    for (size_t row = 0; row < w->bodies.count; row++) {
+        uint32_t hold = body_hold(&w->bodies, row);
+        bool flat = (hold & (DEM_LOCK_ALL | DEM_LOCK_TURNS)) == DEM_LOCK_PLANE;
+        given += (hold & (DEM_HOLD_VELOCITY | DEM_HOLD_SPIN)) != 0;
+        plane += flat;
+        locked += !flat && (hold & (DEM_LOCK_ALL | DEM_LOCK_TURNS));
+    }
+    dem_buffer_text(out, "    body by body, for some are held:");
+    if (given)
+        dem_buffer_print(out, " %zu at a velocity or spin%s", given, locked + plane ? "," : "");
+    if (locked)
+        dem_buffer_print(out, " %zu along or about some axes%s", locked, plane ? "," : "");
+    if (plane)
+        dem_buffer_print(out, " %zu in two dimensions", plane);
+    dem_buffer_text(out, "\n");
+}
+
+static void put_motion(dem_buffer *out, const dem_world *w, size_t isotropic)
+{
+    const dem_scheme *t = &dem_translations[w->integrator.translation], *r = &dem_rotations[w->integrator.rotation];
+    dem_buffer_print(out, "  motion: %s, ",
+                     w->integrator.translation == DEM_TRANSLATION_CENTRAL ? "central differences" : t->about);
+    bool lsym = w->integrator.rotation == DEM_ROTATION_LSYM;
+    if (lsym && isotropic == w->bodies.count)
+        dem_buffer_text(out, "isotropic rotation (all bodies have three equal moments)\n");
+    else if (lsym && isotropic)
+        dem_buffer_print(out, "rotation by lsym, isotropic for %zu bodies\n", isotropic);
+    else if (lsym)
+        dem_buffer_text(out, "rotation by lsym\n");
+    else
+        dem_buffer_print(out, "rotation by %s (%s)\n", r->name, r->about);
+    if (!dem_schemes_default(w->integrator))
+        dem_buffer_print(out,
+                         "    one evaluation of the forces a step; body by body, about %g times as long as by the "
+                         "default schemes\n",
+                         r->number);
+    if (w->held)
+        put_held(out, w);
+}
+
 static void put_passes(dem_buffer *out, const dem_world *w)
 {
     size_t isotropic = 0, meshes = count_walls(w, DEM_FORM_MESH);
@@ -85,13 +129,7 @@ static void put_passes(dem_buffer *out, const dem_world *w)
     dem_buffer_text(out, "  contacts of pairs\n");
     if (w->segment_count * DEM_SEGMENT > w->domain_bodies)
         dem_buffer_print(out, "  momenta across domains of %zu bodies\n", w->domain_bodies);
-    dem_buffer_text(out, "  motion: central differences, ");
-    if (isotropic == w->bodies.count)
-        dem_buffer_text(out, "isotropic rotation (all bodies have three equal moments)\n");
-    else if (isotropic == 0)
-        dem_buffer_text(out, "rotation by lsym\n");
-    else
-        dem_buffer_print(out, "rotation by lsym, isotropic for %zu bodies\n", isotropic);
+    put_motion(out, w, isotropic);
     if (w->damping.local > 0 || w->damping.viscous > 0)
         dem_buffer_text(out, "  with damping of the motion\n");
     dem_buffer_text(out, "  lists, when bodies have moved: search, refresh, rebuild\n");
@@ -144,6 +182,11 @@ dem_status dem_world_explain(dem_world *w, char **text, dem_error *error)
         put_contacts(&out, w, DEM_FORM_MESH, "with a mesh");
     put_kernel(&out, w);
     put_passes(&out, w);
+    size_t regions;
+    dem_regions_views(w->regions, &regions);
+    if (regions)
+        dem_buffer_print(&out, "measures: stress, fabric and packing of %zu region%s with every row of the series, nothing in a step\n",
+                         regions, regions == 1 ? "" : "s");
     dem_status status = put_step(&out, w, error);
     if (status == DEM_OK && out.failed)
         status = dem_fail_memory(error);

@@ -226,6 +226,7 @@ static dem_status hand_over(work *w, dem_body_def **bodies, dem_error *error)
         body->position = b->position;
         body->orientation = w->room.poses[w->held[i]].orientation;
         body->velocity = w->f.fill->velocity;
+        body->hold = w->f.fill->hold;
     }
     return DEM_OK;
 }

@@ -79,11 +79,11 @@ static void move(const dem_rows *rows, dem_motion_job *job)
 {
     bool damped = job->local > 0 || job->viscous > 0;
     if (job->bounded)
-        move_bodies(rows, job, damped, true);
+        move_bodies(rows, job, damped, true, NULL);
     else if (damped)
-        move_bodies(rows, job, true, false);
+        move_bodies(rows, job, true, false, NULL);
     else
-        move_bodies(rows, job, false, false);
+        move_bodies(rows, job, false, false, NULL);
 }
 
 static void cull(dem_cull_job *job)

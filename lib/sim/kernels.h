@@ -12,6 +12,7 @@
 #define DEM_SIM_KERNELS_H
 
 #include "base/simd.h"
+#include "dem/scene.h"
 #include "sim/features.h"
 
 enum { DEM_BODY_ROW = 16, DEM_ROW = 8, DEM_SPHERE_ROW = 4 };
@@ -27,9 +28,9 @@ typedef struct dem_rows {
     const double *walls;    ///< [16 a wall] see wall.h
 } dem_rows;
 
-/// Energy that the contacts of a segment have dissipated, in lanes [J], and the largest overlap ratio.
+/// Energy that the contacts of a segment have dissipated or let go, in lanes [J], and the largest overlap ratio.
 typedef struct dem_tally {
-    double friction[DEM_BLOCK_LANES], viscous[DEM_BLOCK_LANES], work[DEM_BLOCK_LANES];
+    double friction[DEM_BLOCK_LANES], viscous[DEM_BLOCK_LANES], broken[DEM_BLOCK_LANES], work[DEM_BLOCK_LANES];
     double overlap_ratio;
 } dem_tally;
 
@@ -39,6 +40,7 @@ typedef struct dem_contact_record {
     double overlap, normal_force, elastic_normal, elastic_slide, elastic_turn, reduced_mass, stiffness, slide_stiffness;
     double force[3];                     ///< on a [N]
     double lost_friction, lost_viscous;  ///< dissipated since the last step [J] (ledger)
+    double broken;                       ///< energy of bonds that broke in it [J] (ledger)
     double turning[3];                   ///< moment on a beside that of the force [N m]
     double wall_power;                   ///< of a moving wall [W]
     double radius_a, radius_b;
@@ -56,6 +58,7 @@ typedef struct dem_contact_columns {
     double *dash[3];                ///< force of the tangential dashpot in the last step [N] (ledger, slide_damping)
     double *roll[3];                ///< angle of the rolling spring [rad] (rolling)
     double *twist;                  ///< angle of the twisting spring [rad] (twisting)
+    double *bond;                   ///< 1: bonded, -1: broken [-] (bonded)
     double *attached;               ///< 1: surfaces hold on to each other [-] (jkr)
     double *drag[3];                ///< moment not of the springs in the last step [N m] (ledger, with any of these)
     double *loss;                   ///< elastic force that was not passed on in the last step [N] (ledger, damped)
@@ -87,6 +90,7 @@ typedef struct dem_contact_instance {
 /// Energy that the motion of bodies has taken out and put in, in lanes [J].
 typedef struct dem_motion_tally {
     double local[DEM_BLOCK_LANES], drag[DEM_BLOCK_LANES], rolling[DEM_BLOCK_LANES];
+    double work[DEM_BLOCK_LANES];  ///< done by bodies whose motion is given
 } dem_motion_tally;
 
 /// A body whose contacts strain the time step more than it was allowed, see timestep.h.
@@ -110,6 +114,12 @@ typedef struct dem_motion_job {
     double local, viscous;  ///< damping: Cundall's alpha [-], c [1/s]
     bool vector, exclude_gravity;
     bool bounded;  ///< contacts set bounds to the spin
+    // of motion.h only
+    dem_integrator_def schemes;
+    double last_step, turn_kick;  ///< time since the last step; time the moments act [s]
+    const uint32_t *hold;         ///< [bodies] bits of dem_hold; NULL: none is held
+    const double *kept;           ///< [6 a body] velocity and spin that are held [m/s], [rad/s]
+    double *turning;              ///< [3 a body] rate of the spin in the body, a step before [rad/s^2] (walton-braun)
     dem_motion_tally *tally;  ///< ledger; NULL: none
     uint32_t *asked;          ///< bodies beyond their limit, or not finite
     size_t asked_count;

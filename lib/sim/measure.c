@@ -5,6 +5,7 @@
 
 #include "base/status.h"
 #include "sim/bodies.h"
+#include "sim/motion.h"
 
 dem_status dem_views_create(dem_world *w, dem_error *error)
 {
@@ -130,6 +131,7 @@ static void visit_contact(void *user, dem_world *w, int form, const dem_contact_
     dem_views *v = &w->views;
     v->since.friction += r->lost_friction;
     v->since.viscous += r->lost_viscous;
+    v->since.broken += r->broken;
     v->since.work += w->last_step / 2 * r->wall_power;
     if (!r->touches)
         return;
@@ -200,6 +202,15 @@ static damping damping_of(const dem_world *w, size_t row, dem_vec3 weight, const
     return d;
 }
 
+// nothing slows what is held
+static void spare_held(uint32_t hold, damping *d)
+{
+    if (hold & DEM_HOLD_VELOCITY)
+        d->local[0] = d->drag[0] = v3(0, 0, 0);
+    if (hold & DEM_HOLD_SPIN)
+        d->local[1] = d->drag[1] = v3(0, 0, 0);
+}
+
 // what damping takes in the half step to the positions' time, which is in no tally yet
 static void note_damping(dem_world *w, size_t i, const damping *d)
 {
@@ -209,6 +220,16 @@ static void note_damping(dem_world *w, size_t i, const damping *d)
     dem_vec3 turn = v3_scale(v3_add(v3(motion[3], motion[4], motion[5]), v->spin[i]), w->last_step / 4);
     v->since.local -= v3_dot(d->local[0], path) + v3_dot(d->local[1], turn);
     v->since.drag -= v3_dot(d->drag[0], path) + v3_dot(d->drag[1], turn);
+}
+
+// ... and what bodies do whose motion is given: they count as walls, without energy of their own
+static void note_holding(dem_world *w, size_t i)
+{
+    dem_views *v = &w->views;
+    uint32_t hold = body_hold(&w->bodies, w->bodies.place[i]);
+    double power = hold & DEM_HOLD_VELOCITY ? v3_dot(v->force[i], v->velocity[i]) : 0;
+    power += hold & DEM_HOLD_SPIN ? v3_dot(v->moment[i], v->spin[i]) : 0;
+    v->since.work -= w->last_step / 2 * power;
 }
 
 static dem_vec3 unwrapped(const dem_world *w, size_t row)
@@ -237,30 +258,34 @@ static void view_body(dem_world *w, size_t i)
 {
     dem_views *v = &w->views;
     size_t row = w->bodies.place[i];
-    const double *inertia = w->bodies.inertia + DEM_ROW * row, *p = w->bodies.momentum + DEM_ROW * row;
+    const double *inertia = w->bodies.inertia + DEM_ROW * row;
     const dem_template *t = &w->templates.items[w->bodies.shape[row]];
-    double half = w->last_step / 2;
     dem_vec3 weight = v3_scale(w->gravity, inertia[5]), load[2] = {v3_add(v->force[i], weight), v->moment[i]};
     bool damped = w->damping.local > 0 || w->damping.viscous > 0;
     damping d;
+    uint32_t hold = body_hold(&w->bodies, row);
     if (damped) {
         d = damping_of(w, row, weight, load);
+        spare_held(hold, &d);
         for (int k = 0; k < 2; k++)
             load[k] = v3_add(load[k], v3_add(d.local[k], d.drag[k]));
     }
     v->shape[i] = w->bodies.shape[row];
     v->scale[i] = body_scale(&w->bodies, row);
-    v->mass[i] = inertia[5];
+    v->mass[i] = body_mass(w, row);
     v->position[i] = wrapped(w, body_position(&w->bodies, row));
     v->orientation[i] = template_principal_orientation(t, body_orientation(&w->bodies, row));
-    v->velocity[i] = v3_scale(v3_along(v3(p[0], p[1], p[2]), half, load[0]), inertia[0]);
-    dem_vec3 momentum = v3_along(v3(p[3], p[4], p[5]), half, load[1]);
-    v->spin[i] = dem_body_spin(&w->bodies, row, momentum);
+    v->velocity[i] = dem_motion_velocity(w, row, load[0]);
+    v->spin[i] = dem_motion_spin(w, row, load[1]);
     if (damped && w->ledger)
         note_damping(w, i, &d);
     dem_energy *e = &v->figures.energy;
-    e->kinetic += v3_norm2(v->velocity[i]) * inertia[5] / 2;
-    e->rotational += v3_dot(momentum, v->spin[i]) / 2;
+    if (hold & (DEM_HOLD_VELOCITY | DEM_HOLD_SPIN))
+        note_holding(w, i);
+    if (!(hold & DEM_HOLD_VELOCITY))
+        e->kinetic += v3_norm2(v->velocity[i]) * v->mass[i] / 2;
+    if (!(hold & DEM_HOLD_SPIN))
+        e->rotational += dem_body_turning_energy(&w->bodies, row, v->spin[i]);
     e->potential -= v3_dot(w->gravity, unwrapped(w, row)) * inertia[5];
 }
 
@@ -316,12 +341,14 @@ dem_energy dem_ledger(const dem_world *w)
     for (size_t i = 0; i < w->segment_count * (1 + DEM_WALL_FORMS); i++) {
         e.friction += lanes(w->tallies[i].friction);
         e.viscous += lanes(w->tallies[i].viscous);
+        e.broken += lanes(w->tallies[i].broken);
         e.work += lanes(w->tallies[i].work);
     }
     for (size_t i = 0; i < w->segment_count; i++) {
         e.local += lanes(w->motion_tallies[i].local);
         e.drag += lanes(w->motion_tallies[i].drag);
         e.friction += lanes(w->motion_tallies[i].rolling);
+        e.work += lanes(w->motion_tallies[i].work);
     }
     return e;
 }
@@ -331,7 +358,7 @@ static void balance(dem_world *w)
     dem_energy *e = &w->views.figures.energy, spent = dem_ledger(w);
     e->elastic = w->views.elastic;
     double now = e->kinetic + e->rotational + e->potential + e->elastic;
-    double gone = spent.friction + spent.viscous + spent.local + spent.drag - spent.work;
+    double gone = spent.friction + spent.viscous + spent.broken + spent.local + spent.drag - spent.work;
     if (w->steps == 0) {
         // a spring that the first sight of a sliding contact puts in is no energy that was there
         w->energy_start = now + gone;
@@ -340,11 +367,12 @@ static void balance(dem_world *w)
     e->start = w->energy_start;
     e->friction = spent.friction;
     e->viscous = spent.viscous;
+    e->broken = spent.broken;
     e->local = spent.local;
     e->drag = spent.drag;
     e->work = spent.work;
     double most = fmax(fmax(e->kinetic + e->rotational, e->elastic), fabs(e->potential - w->potential_start));
-    most = fmax(most, fmax(fabs(e->work), e->friction + e->viscous + e->local + e->drag));
+    most = fmax(most, fmax(fabs(e->work), e->friction + e->viscous + e->broken + e->local + e->drag));
     w->views.most_energy = fmax(w->views.most_energy, most);
     double off = now + gone - e->start;
     e->error = NAN;
@@ -381,6 +409,10 @@ dem_status dem_world_measure(dem_world *w, dem_error *error)
         return dem_fail_memory(error);
     gather(w);
     balance(w);
+    if (w->regions) {
+        dem_body_view bodies = dem_world_bodies(w);
+        dem_regions_measure(w->regions, &bodies, v->contacts, v->contact_count);
+    }
     v->figures.largest_overlap_ratio = fmax(largest_overlap(w), v->figures.overlap_ratio);
     w->clocks[DEM_PASS_MEASURE].seconds += dem_clock() - begin;
     return DEM_OK;
@@ -408,4 +440,9 @@ const dem_wall_view *dem_world_walls(const dem_world *w, size_t *count)
 {
     *count = w->walls.count;
     return w->views.walls;
+}
+
+const dem_measure_view *dem_world_measures(const dem_world *w, size_t *count)
+{
+    return dem_regions_views(w->regions, count);
 }

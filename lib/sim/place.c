@@ -9,6 +9,8 @@
 
 // ---- listed bodies
 
+enum { LAST_HOLD = 2 * DEM_HOLD_SPIN - 1 };
+
 static bool finite_vec(dem_vec3 v)
 {
     return isfinite(v.x + v.y + v.z);
@@ -23,8 +25,12 @@ static dem_status check_body(const dem_scene *scene, const dem_body_def *b, size
         wrong = "names a shape that is not there; correct it";
     else if (!finite_vec(b->position) || !finite_vec(b->velocity) || !finite_vec(b->spin))
         wrong = "has a number that is not finite; correct it";
+    else if (scene->dimension == 2 && (b->velocity.z != 0 || b->spin.x != 0 || b->spin.y != 0))
+        wrong = "leaves the plane, and the scene has two dimensions; set vz, wx and wy to 0";
     else if (!(norm > 0 && isfinite(norm)))
         wrong = "has an orientation that is none; give a quaternion w, x, y, z that is not 0";
+    else if (b->hold > LAST_HOLD)
+        wrong = "is held by bits that mean nothing; take those of dem_hold";
     else if (!(b->scale > 0 && isfinite(b->scale)))
         wrong = "has a scale that is not positive; correct it";
     return wrong ? dem_fail(error, DEM_BAD_INPUT, "body %zu %s", index, wrong) : DEM_OK;
@@ -146,6 +152,8 @@ dem_status dem_place_bodies(const dem_world *w, const dem_scene *scene, dem_body
         status = dem_fail_memory(error);
     for (size_t i = 0; status == DEM_OK && i < scene->bodies.fill_count; i++)
         status = add_fill(&p, &scene->bodies.fills[i], bodies, count, error);
+    for (size_t i = 0; status == DEM_OK && scene->dimension == 2 && i < *count; i++)
+        (*bodies)[i].hold |= DEM_LOCK_PLANE;
     free(p.shapes);
     free(p.balls);
     free(p.near.items);

@@ -63,8 +63,15 @@ static uint64_t hash_constants(const dem_world *w)
         w->domain.high,
         {w->damping.local, w->damping.viscous, w->damping.local_frame + 2 * w->damping.exclude_gravity}};
     h = hash_bytes(h, loads, sizeof loads);
-    double numbers[5] = {w->time_def.step, w->multiple, w->domain.periodic[0], w->domain.periodic[1],
-                         w->domain.periodic[2]};
+    double numbers[9] = {w->time_def.step,
+                         w->multiple,
+                         w->domain.periodic[0],
+                         w->domain.periodic[1],
+                         w->domain.periodic[2],
+                         w->integrator.translation,
+                         w->integrator.rotation,
+                         w->held,
+                         w->kept};
     return hash_bytes(h, numbers, sizeof numbers);
 }
 
@@ -332,8 +339,11 @@ uint64_t dem_world_hash(const dem_world *w)
         const dem_contacts *contacts = form < 0 ? &w->contacts : &w->wall_contacts[form];
         for (size_t i = 0; contacts->segments && i < w->segment_count; i++) {
             const dem_segment *s = &contacts->segments[i];
-            for (int k = 0; contacts->columns.spring[0] && k < 3; k++)
-                hash = hash_bytes(hash, contacts->columns.spring[k] + s->begin, (s->end - s->begin) * sizeof(double));
+            const dem_contact_columns *c = &contacts->columns;
+            const double *columns[] = {c->spring[0], c->spring[1], c->spring[2], c->bond};
+            for (int k = 0; k < 4; k++)
+                if (columns[k])
+                    hash = hash_bytes(hash, columns[k] + s->begin, (s->end - s->begin) * sizeof(double));
         }
     }
     return hash;

@@ -17,6 +17,7 @@ dem_scene dem_scene_defaults(void)
 {
     return (dem_scene){
         .title = "",
+        .dimension = 3,
         .time = {.end = NAN, .safety = NAN, .contact_steps = 10},
         .domain = {.low = {-INFINITY, -INFINITY, -INFINITY}, .high = {INFINITY, INFINITY, INFINITY}},
         .output = {.directory = "out", .energy = true},
@@ -33,6 +34,8 @@ dem_pair_law dem_pair_law_defaults(void)
         .tangential_rate = NAN,
         .rescale = true,
         .rolling_stiffness = NAN,
+        .static_coefficient = NAN,
+        .friction_decay = 500,
         .rolling_damping = 0.3,
     };
 }

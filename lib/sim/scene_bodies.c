@@ -3,6 +3,7 @@
 
 #include "base/file.h"
 #include "sim/bodies_csv.h"
+#include "sim/hold.h"
 #include "sim/scene_reader.h"
 
 // one entry as it stands in the list
@@ -10,6 +11,7 @@ typedef struct entry_text {
     dem_body_def body;
     const char *file;
     double size;
+    bool fixed;
 } entry_text;
 
 static dem_status read_orientation(dem_scene_reader *r, const dem_scene_value *v, const dem_field *field, void *into)
@@ -40,6 +42,46 @@ enum {
     BODY_LOCK,
     BODY_PRESCRIBED,
 };
+
+// ---- what is held
+
+static const dem_choice locks[] = {{"x", DEM_LOCK_X},   {"y", DEM_LOCK_Y},   {"z", DEM_LOCK_Z}, {"rx", DEM_LOCK_RX},
+                                   {"ry", DEM_LOCK_RY}, {"rz", DEM_LOCK_RZ}, {NULL, 0}};
+static const dem_choice kept[] = {{"velocity", DEM_HOLD_VELOCITY}, {"spin", DEM_HOLD_SPIN}, {NULL, 0}};
+
+// one name or a list of names, as bits
+static dem_status read_hold(dem_scene_reader *r, const dem_scene_value *v, const dem_field *field, void *into)
+{
+    uint32_t *hold = into;
+    int bit;
+    if (dem_json_string(v->json)) {
+        DEM_TRY(dem_field_choice(r, v, field, &bit));
+        *hold |= (uint32_t)bit;
+        return DEM_OK;
+    }
+    if (!dem_json_is_array(v->json) || !dem_json_length(v->json))
+        return dem_scene_refuse(
+            r, v, field->choices == locks ? "write it as in [\"z\", \"rx\"]" : "write it as in [\"velocity\"]",
+            "needs a list of names");
+    for (size_t i = 0; i < dem_json_length(v->json); i++) {
+        dem_scene_value item = dem_scene_item(v, i);
+        DEM_TRY(dem_field_choice(r, &item, field, &bit));
+        *hold |= (uint32_t)bit;
+    }
+    return DEM_OK;
+}
+
+static dem_status read_fixed(dem_scene_reader *r, const dem_scene_value *v, const dem_field *field, void *into)
+{
+    uint32_t *hold = into;
+    bool fixed;
+    DEM_TRY(dem_field_flag(r, v, field, &fixed));
+    *hold |= fixed ? DEM_HOLD_VELOCITY | DEM_HOLD_SPIN : 0;
+    return DEM_OK;
+}
+
+// ---- entries
+
 static const dem_field body_table[] = {
     [BODY_FILE] = {"file", dem_field_path, .at = offsetof(entry_text, file)},
     [BODY_FILL] = {"fill", dem_section_fill, .fields = &dem_fill_fields},
@@ -55,9 +97,9 @@ static const dem_field body_table[] = {
                    .range = DEM_RANGE_POSITIVE},
     [BODY_SCALE] = {"scale", dem_field_quantity, .at = offsetof(entry_text, body.scale),
                     .dimension = DEM_DIMENSION_NONE, .range = DEM_RANGE_POSITIVE},
-    [BODY_FIXED] = DEM_UNBUILT("fixed"),
-    [BODY_LOCK] = DEM_UNBUILT("lock"),
-    [BODY_PRESCRIBED] = DEM_UNBUILT("prescribed"),
+    [BODY_FIXED] = {"fixed", read_fixed, .at = offsetof(entry_text, body.hold)},
+    [BODY_LOCK] = {"lock", read_hold, .at = offsetof(entry_text, body.hold), .choices = locks},
+    [BODY_PRESCRIBED] = {"prescribed", read_hold, .at = offsetof(entry_text, body.hold), .choices = kept},
 };
 const dem_fields dem_body_fields = DEM_FIELDS(body_table);
 
@@ -70,7 +112,26 @@ static dem_status add_entry(dem_scene_reader *r, dem_scene_entry entry)
     return DEM_OK;
 }
 
-static dem_status add_file(dem_scene_reader *r, const char *file)
+static bool is_zero(dem_vec3 v)
+{
+    return v.x == 0 && v.y == 0 && v.z == 0;
+}
+
+// a body that is fixed and moves, or is held at what it is locked out of, is a mistake
+static dem_status check_hold(dem_scene_reader *r, const dem_scene_value *v, bool fixed, dem_vec3 velocity,
+                             dem_vec3 spin, uint32_t hold)
+{
+    bool turns = !is_zero(v3_sub(spin, unlocked_spin(spin, hold)));
+    if (fixed && !(is_zero(velocity) && is_zero(spin)))
+        return dem_scene_refuse(r, v, "leave one out, or write \"prescribed\": [\"velocity\", \"spin\"]",
+                                "is \"fixed\" and moves");
+    if (turns || !is_zero(v3_sub(velocity, unlocked_velocity(velocity, hold))))
+        return dem_scene_refuse(r, v, "set it to 0 there", "has a %s along an axis of \"lock\"",
+                                turns ? "spin" : "velocity");
+    return DEM_OK;
+}
+
+static dem_status add_file(dem_scene_reader *r, const dem_scene_value *v, const char *file, bool fixed, uint32_t hold)
 {
     struct dem_scene_owner *o = r->owner;
     dem_buffer text;
@@ -79,9 +140,13 @@ static dem_status add_file(dem_scene_reader *r, const char *file)
     dem_status status = dem_bodies_csv_parse(text.data, text.size, file, r->scene->shapes, r->scene->shape_count,
                                              &o->bodies, &o->body_count, &o->body_capacity, r->error);
     dem_buffer_release(&text);
+    for (size_t i = first; status == DEM_OK && i < o->body_count; i++) {
+        o->bodies[i].hold = hold;
+        status = check_hold(r, v, fixed, o->bodies[i].velocity, o->bodies[i].spin, hold);
+    }
     if (status != DEM_OK)
         return status;
-    return add_entry(r, (dem_scene_entry){DEM_ENTRY_FILE, file, first, o->body_count - first});
+    return add_entry(r, (dem_scene_entry){DEM_ENTRY_FILE, file, first, o->body_count - first, hold});
 }
 
 static dem_status add_body(dem_scene_reader *r, const dem_scene_value *v, uint64_t given, entry_text *text)
@@ -98,7 +163,16 @@ static dem_status add_body(dem_scene_reader *r, const dem_scene_value *v, uint64
     if (!dem_grow(&o->bodies, &o->body_capacity, o->body_count, sizeof *o->bodies))
         return dem_fail_memory(r->error);
     o->bodies[o->body_count] = text->body;
-    return add_entry(r, (dem_scene_entry){DEM_ENTRY_BODY, NULL, o->body_count++, 1});
+    DEM_TRY(check_hold(r, v, text->fixed, text->body.velocity, text->body.spin, text->body.hold));
+    return add_entry(r, (dem_scene_entry){DEM_ENTRY_BODY, NULL, o->body_count++, 1, 0});
+}
+
+static dem_status add_fill(dem_scene_reader *r, const dem_scene_value *v, const entry_text *text)
+{
+    dem_fill_def *fill = &r->owner->fills[r->owner->fill_count - 1];
+    fill->hold = text->body.hold;
+    DEM_TRY(check_hold(r, v, text->fixed, fill->velocity, v3(0, 0, 0), fill->hold));
+    return add_entry(r, (dem_scene_entry){DEM_ENTRY_FILL, NULL, r->owner->fill_count - 1, 1, 0});
 }
 
 static dem_status read_entry(dem_scene_reader *r, const dem_scene_value *v, const dem_field *field)
@@ -107,13 +181,17 @@ static dem_status read_entry(dem_scene_reader *r, const dem_scene_value *v, cons
     uint64_t given;
     DEM_TRY(dem_fields_read(r, v, field->fields, &text, &given));
     bool file = dem_given(given, BODY_FILE), fill = dem_given(given, BODY_FILL);
-    if ((file || fill) && (given & (given - 1)))
-        return dem_scene_refuse(r, v, "make two entries of it", "\"%s\" stands alone", file ? "file" : "fill");
+    uint64_t options = 1ull << BODY_FIXED | 1ull << BODY_LOCK | 1ull << BODY_PRESCRIBED, others = given & ~options;
+    text.fixed = (text.body.hold & (DEM_HOLD_VELOCITY | DEM_HOLD_SPIN)) && !dem_given(given, BODY_PRESCRIBED);
+    if ((file || fill) && (others & (others - 1)))
+        return dem_scene_refuse(r, v, "make two entries of it",
+                                "\"%s\" stands alone, or with \"fixed\", \"lock\", \"prescribed\"",
+                                file ? "file" : "fill");
     if (!file && !fill && !dem_given(given, BODY_SHAPE))
         return dem_scene_refuse(r, v, "give one of them", "needs \"shape\", \"file\" or \"fill\"");
     if (fill)
-        return add_entry(r, (dem_scene_entry){DEM_ENTRY_FILL, NULL, r->owner->fill_count - 1, 1});
-    return file ? add_file(r, text.file) : add_body(r, v, given, &text);
+        return add_fill(r, v, &text);
+    return file ? add_file(r, v, text.file, text.fixed, text.body.hold) : add_body(r, v, given, &text);
 }
 
 dem_status dem_section_bodies(dem_scene_reader *r, const dem_scene_value *v, const dem_field *field, void *into)

@@ -3,6 +3,7 @@
 
 #include "math/vec.h"
 #include "sim/scene_reader.h"
+#include "sim/schemes.h"
 
 #define SCHEMA "dem-scene/"
 #define VERSION "1"
@@ -103,40 +104,16 @@ static const dem_field damping_table[] = {
 };
 static const dem_fields damping_fields = DEM_FIELDS(damping_table);
 
-static const dem_choice translations[] = {{"central", 0},
-                                          {"symplectic-euler", DEM_NOT_BUILT},
-                                          {"velocity-verlet", DEM_NOT_BUILT},
-                                          {"taylor", DEM_NOT_BUILT},
-                                          {"forward-euler", DEM_NOT_BUILT},
-                                          {"newmark", DEM_NOT_BUILT},
-                                          {NULL, 0}};
-static const dem_choice rotations[] = {{"lsym", 0},
-                                       {"lsym4", DEM_NOT_BUILT},
-                                       {"spiral", DEM_NOT_BUILT},
-                                       {"no-squish", DEM_NOT_BUILT},
-                                       {"omelyan", DEM_NOT_BUILT},
-                                       {"fincham", DEM_NOT_BUILT},
-                                       {"walton-braun", DEM_NOT_BUILT},
-                                       {"pcdm", DEM_NOT_BUILT},
-                                       {NULL, 0}};
-
-// there is one of each, so nothing is kept
-typedef struct integrator {
-    int translation, rotation;
-} integrator;
+#define CHOICE_OF_TRANSLATION(id, name, half, number, about) {name, DEM_TRANSLATION_##id},
+static const dem_choice translations[] = {DEM_TRANSLATIONS(CHOICE_OF_TRANSLATION){NULL, 0}};
+#define CHOICE_OF_ROTATION(id, name, half, number, about) {name, DEM_ROTATION_##id},
+static const dem_choice rotations[] = {DEM_ROTATIONS(CHOICE_OF_ROTATION){NULL, 0}};
 
 static const dem_field integrator_table[] = {
-    {"translation", dem_field_choice, .at = offsetof(integrator, translation), .choices = translations},
-    {"rotation", dem_field_choice, .at = offsetof(integrator, rotation), .choices = rotations},
+    {"translation", dem_field_choice, .at = offsetof(dem_integrator_def, translation), .choices = translations},
+    {"rotation", dem_field_choice, .at = offsetof(dem_integrator_def, rotation), .choices = rotations},
 };
 static const dem_fields integrator_fields = DEM_FIELDS(integrator_table);
-
-static dem_status read_integrator(dem_scene_reader *r, const dem_scene_value *v, const dem_field *field, void *into)
-{
-    (void)into;
-    integrator names;
-    return dem_fields_read(r, v, field->fields, &names, NULL);
-}
 
 static const dem_choice multiples[] = {{"sum", DEM_MULTIPLE_SUM},
                                        {"mean", DEM_MULTIPLE_MEAN},
@@ -181,6 +158,8 @@ static const dem_field output_table[] = {
      .range = DEM_RANGE_FROM_0},
     {"series", dem_field_quantity, .at = offsetof(dem_output_def, series), .dimension = DEM_DIMENSION_TIME,
      .range = DEM_RANGE_FROM_0},
+    {"contacts", dem_field_quantity, .at = offsetof(dem_output_def, contacts), .dimension = DEM_DIMENSION_TIME,
+     .range = DEM_RANGE_FROM_0},
     {"checkpoint", read_checkpoint, .dimension = DEM_DIMENSION_TIME, .range = DEM_RANGE_FROM_0},
     {"energy", dem_field_flag, .at = offsetof(dem_output_def, energy)},
 };
@@ -209,11 +188,21 @@ static dem_status ignore_text(dem_scene_reader *r, const dem_scene_value *v, con
     return dem_field_text(r, v, field, &text);
 }
 
+static dem_status read_dimension(dem_scene_reader *r, const dem_scene_value *v, const dem_field *field, void *into)
+{
+    uint64_t dimension = 0;
+    dem_field whole = *field;
+    whole.range = (dem_range){.low = 2, .high = 3};
+    DEM_TRY(dem_field_whole(r, v, &whole, &dimension));
+    *(unsigned *)into = (unsigned)dimension;
+    return DEM_OK;
+}
+
 static const dem_field scene_table[] = {
     {"schema", read_schema, .needed = true},
     {.name = "$schema", .read = ignore_text},
     {"title", dem_field_text, .at = offsetof(dem_scene, title)},
-    DEM_UNBUILT("dimension"),
+    {"dimension", read_dimension, .at = offsetof(dem_scene, dimension)},
     {"gravity", dem_field_vector, .at = offsetof(dem_scene, gravity), .dimension = DEM_DIMENSION_ACCELERATION},
     {"time", dem_field_object, .at = offsetof(dem_scene, time), .fields = &time_fields},
     {"domain", read_domain, .at = offsetof(dem_scene, domain), .fields = &domain_fields},
@@ -225,8 +214,9 @@ static const dem_field scene_table[] = {
     {.name = "inlets", .read = dem_field_nothing},
     {.name = "bonds", .read = dem_field_nothing},
     {"damping", dem_field_object, .at = offsetof(dem_scene, damping), .fields = &damping_fields},
-    {"integrator", read_integrator, .fields = &integrator_fields},
+    {"integrator", dem_field_object, .at = offsetof(dem_scene, integrator), .fields = &integrator_fields},
     {"contacts_between_clumps", dem_field_choice, .at = offsetof(dem_scene, multiple), .choices = multiples},
+    {"measures", dem_section_measures, .fields = &dem_measure_fields},
     {"output", dem_field_object, .at = offsetof(dem_scene, output), .fields = &output_fields},
 };
 const dem_fields dem_scene_fields = DEM_FIELDS(scene_table);
@@ -259,6 +249,7 @@ dem_status dem_scene_finish(dem_scene_reader *r, const dem_scene_value *root)
 {
     dem_scene *scene = r->scene;
     DEM_TRY(check_laws(r, root));
+    DEM_TRY(dem_scene_check_measures(r, root));
     scene->time.safety = dem_scene_safety(scene);
     return DEM_OK;  // the output's directory is left alone: results go to where one works, not to where scenes are kept
 }

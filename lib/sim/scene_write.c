@@ -3,7 +3,9 @@
 #include <string.h>
 
 #include "math/vec.h"
+#include "sim/hold.h"
 #include "sim/scene.h"
+#include "sim/schemes.h"
 
 static void put_vec(dem_json_writer *w, const char *key, dem_vec3 v)
 {
@@ -123,6 +125,10 @@ static void put_friction(dem_json_writer *w, const dem_pair_law *law)
     else if (!mindlin)
         dem_json_put_number(w, "stiffness_ratio", law->stiffness_ratio);
     dem_json_put_number(w, "coefficient", law->friction_coefficient);
+    if (!isnan(law->static_coefficient)) {
+        dem_json_put_number(w, "static_coefficient", law->static_coefficient);
+        dem_json_put_number(w, "decay", law->friction_decay);
+    }
     put_known(w, "damping_rate", law->tangential_rate);
     if (mindlin)
         dem_json_put_bool(w, "rescale", law->rescale);
@@ -155,8 +161,16 @@ static void put_moments(dem_json_writer *w, const dem_pair_law *law)
     }
     if (law->cohesion != DEM_COHESION_NONE) {
         dem_json_open_object(w, "cohesion");
-        dem_json_put_string(w, "law", "sjkr");
-        dem_json_put_number(w, "energy_density", law->energy_density);
+        bool breakable = law->cohesion == DEM_COHESION_BREAKABLE, touch = law->bonded == DEM_BONDED_AT_TOUCH;
+        dem_json_put_string(w, "law", breakable ? "breakable" : "sjkr");
+        if (breakable) {
+            dem_json_put_number(w, "tension", law->bond_tension);
+            dem_json_put_number(w, "shear", law->bond_shear);
+            dem_json_put_string(w, "bonded", touch ? "at_touch" : "at_start");
+            if (!touch)
+                dem_json_put_number(w, "gap", law->bond_gap);
+        } else
+            dem_json_put_number(w, "energy_density", law->energy_density);
         dem_json_close(w, '}');
     }
 }
@@ -222,6 +236,26 @@ static void put_shapes(dem_json_writer *w, const dem_scene *scene)
 
 // ---- bodies
 
+// what of it is held; a scene that holds nothing names nothing
+static void put_hold(dem_json_writer *w, uint32_t hold)
+{
+    static const char *const locks[] = {"x", "y", "z", "rx", "ry", "rz"}, *const kept[] = {"velocity", "spin"};
+    if (hold & (DEM_LOCK_ALL | DEM_LOCK_TURNS)) {
+        dem_json_open_array(w, "lock", false);
+        for (int k = 0; k < 6; k++)
+            if (hold >> k & 1)
+                dem_json_put_string(w, NULL, locks[k]);
+        dem_json_close(w, ']');
+    }
+    if (hold & (DEM_HOLD_VELOCITY | DEM_HOLD_SPIN)) {
+        dem_json_open_array(w, "prescribed", false);
+        for (int k = 0; k < 2; k++)
+            if (hold & (uint32_t)(DEM_HOLD_VELOCITY << k))
+                dem_json_put_string(w, NULL, kept[k]);
+        dem_json_close(w, ']');
+    }
+}
+
 static void put_body(dem_json_writer *w, const dem_scene *scene, const dem_body_def *body)
 {
     dem_quat q = body->orientation;
@@ -232,6 +266,7 @@ static void put_body(dem_json_writer *w, const dem_scene *scene, const dem_body_
     put_vec(w, "velocity", body->velocity);
     put_vec(w, "spin", body->spin);
     dem_json_put_number(w, "scale", body->scale);
+    put_hold(w, body->hold);
     dem_json_close(w, '}');
 }
 
@@ -295,6 +330,7 @@ static void put_fill(dem_json_writer *w, const dem_scene *scene, const dem_fill_
     dem_json_put_number(w, "gap", fill->gap);
     put_vec(w, "velocity", fill->velocity);
     dem_json_close(w, '}');
+    put_hold(w, fill->hold);
     dem_json_close(w, '}');
 }
 
@@ -303,6 +339,7 @@ static void put_entry(dem_json_writer *w, const dem_scene *scene, const dem_scen
     if (entry->kind == DEM_ENTRY_FILE) {
         dem_json_open_object(w, NULL);
         dem_json_put_string(w, "file", entry->file);
+        put_hold(w, entry->hold);
         dem_json_close(w, '}');
         return;
     }
@@ -320,7 +357,8 @@ static void put_bodies(dem_json_writer *w, const dem_scene *scene)
     const dem_bodies_def *b = &scene->bodies;
     bool as_read = o && o->bodies == b->bodies && o->body_count == b->count && o->fills == b->fills &&
                    o->fill_count == b->fill_count;
-    const dem_scene_entry plain[] = {{DEM_ENTRY_BODY, NULL, 0, b->count}, {DEM_ENTRY_FILL, NULL, 0, b->fill_count}};
+    const dem_scene_entry plain[] = {{DEM_ENTRY_BODY, NULL, 0, b->count, 0},
+                                     {DEM_ENTRY_FILL, NULL, 0, b->fill_count, 0}};
     const dem_scene_entry *entries = as_read ? o->entries : plain;
     dem_json_open_array(w, "bodies", true);
     for (size_t i = 0; i < (as_read ? o->entry_count : 2); i++)
@@ -408,6 +446,30 @@ static void put_damping(dem_json_writer *w, const dem_damping_def *damping)
     dem_json_close(w, '}');
 }
 
+static void put_measures(dem_json_writer *w, const dem_scene *scene)
+{
+    open_map(w, "measures");
+    for (size_t i = 0; i < scene->measure_count; i++) {
+        const dem_measure_def *m = &scene->measures[i];
+        dem_json_open_object(w, text_of(m->name));
+        if (m->region == DEM_REGION_BOX) {
+            dem_json_open_array(w, "box", false);
+            put_vec(w, NULL, m->low);
+            put_vec(w, NULL, m->high);
+            dem_json_close(w, ']');
+        } else if (m->region == DEM_REGION_BALL) {
+            dem_json_open_object(w, "ball");
+            put_vec(w, "centre", m->centre);
+            dem_json_put_number(w, "radius", m->radius);
+            dem_json_close(w, '}');
+        } else
+            dem_json_put_bool(w, "whole", true);
+        dem_json_put_bool(w, "kinetic", m->kinetic);
+        dem_json_close(w, '}');
+    }
+    dem_json_close(w, '}');
+}
+
 static void put_output(dem_json_writer *w, const dem_output_def *output)
 {
     char checkpoint[64];
@@ -415,6 +477,7 @@ static void put_output(dem_json_writer *w, const dem_output_def *output)
     dem_json_put_string(w, "directory", text_of(output->directory));
     dem_json_put_number(w, "frames", output->frames);
     dem_json_put_number(w, "series", output->series);
+    dem_json_put_number(w, "contacts", output->contacts);
     if (output->checkpoint_wall) {
         dem_format_double(checkpoint, sizeof checkpoint, output->checkpoint, 17);
         strcat(checkpoint, " s wall");
@@ -432,6 +495,7 @@ static dem_status put_scene(dem_json_writer *w, const dem_scene *scene, dem_erro
     dem_json_open_object(w, NULL);
     dem_json_put_string(w, "schema", "dem-scene/1");
     dem_json_put_string(w, "title", text_of(scene->title));
+    dem_json_put_whole(w, "dimension", scene->dimension == 2 ? 2 : 3);
     put_vec(w, "gravity", scene->gravity);
     put_time(w, scene);
     put_domain(w, &scene->domain);
@@ -442,10 +506,11 @@ static dem_status put_scene(dem_json_writer *w, const dem_scene *scene, dem_erro
     DEM_TRY(put_walls(w, scene, error));
     put_damping(w, &scene->damping);
     dem_json_open_object(w, "integrator");
-    dem_json_put_string(w, "translation", "central");
-    dem_json_put_string(w, "rotation", "lsym");
+    dem_json_put_string(w, "translation", dem_translations[scene->integrator.translation].name);
+    dem_json_put_string(w, "rotation", dem_rotations[scene->integrator.rotation].name);
     dem_json_close(w, '}');
     dem_json_put_string(w, "contacts_between_clumps", multiples[scene->multiple]);
+    put_measures(w, scene);
     put_output(w, &scene->output);
     dem_json_close(w, '}');
     return DEM_OK;

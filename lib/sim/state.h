@@ -10,9 +10,11 @@
 #include "base/threads.h"
 #include "dem/world.h"
 #include "math/quat.h"
+#include "sim/hold.h"
 #include "sim/kernels.h"
 #include "sim/laws.h"
 #include "sim/mesh_touch.h"
+#include "sim/region.h"
 #include "sim/template.h"
 #include "sim/walls.h"
 
@@ -38,8 +40,12 @@ enum {
     X(double, wall_limit, 1, "m", (w)->walls.count > 0, "path at which the wall lists are looked at")                  \
     X(double, strain_limit, 1, "-", (w)->features.watch, "strain at which the step is looked at")                      \
     X(int32_t, wraps, 3, "-", (w)->periodic, "how often a periodic side was crossed")                                  \
-    X(double, before, 8, "kg m/s, kg m2/s", (w)->damping.local > 0 || (w)->damping.viscous > 0,                        \
-      "momenta before the contacts")
+    X(double, before, 8, "kg m/s, kg m2/s", (w)->damping.local > 0 || (w)->damping.viscous > 0 || (w)->other_motion,   \
+      "momenta before the contacts")                                                                                   \
+    X(uint32_t, hold, 1, "-", (w)->held, "what of the motion is held")                                                 \
+    X(double, kept, 6, "m/s, rad/s", (w)->kept, "velocity and spin that are held")                                     \
+    X(double, turning, 3, "rad/s2", (w)->integrator.rotation == DEM_ROTATION_WALTON_BRAUN,                             \
+      "rate of the spin in the body, a step before")
 
 typedef struct dem_bodies {
     size_t count, padded;  ///< padded: to 8, with the two dummies
@@ -144,6 +150,9 @@ struct dem_world {
     bool periodic;
     dem_damping_def damping;
     dem_multiple multiple;
+    dem_integrator_def integrator;
+    bool other_motion;  ///< than the kernels': see motion.h
+    bool held, kept;    ///< some bodies are held; some at a velocity or spin
     dem_time_def time_def;
     bool ledger;
     dem_clump **clumps;
@@ -190,6 +199,7 @@ struct dem_world {
     dem_push *pushes;
     size_t push_count, push_capacity;
     dem_views views;
+    dem_regions *regions;  ///< NULL: nothing is measured by region
     dem_pass_time clocks[DEM_PASSES];
     uint64_t searches;  ///< for pairs, since the world was made
     double warned[8];
@@ -236,6 +246,17 @@ static inline dem_rows world_rows(const dem_world *w)
 {
     return (dem_rows){w->bodies.bodies, w->bodies.momentum, w->bodies.inertia, &w->templates.spheres[0][0],
                       w->shifts,        w->laws.rows,       w->walls.rows};
+}
+
+static inline uint32_t body_hold(const dem_bodies *b, size_t row)
+{
+    return b->hold ? b->hold[row] : 0;
+}
+/// The mass itself, also of a body that others see without end of it [kg].
+static inline double body_mass(const dem_world *w, size_t row)
+{
+    double scale = body_scale(&w->bodies, row), cube = scale * scale * scale;
+    return w->templates.items[w->bodies.shape[row]].mass * cube;
 }
 
 #endif

@@ -119,7 +119,8 @@ static void add_contact(const dem_world *w, body_problem *p, const dem_touch *t,
     if (!wall)
         mass += inverse_mass(w, row[1], arm[1], t->normal);
     mass = 1 / mass;
-    double radius = law[LAW_HERTZ] > 0 ? sqrt(t->reduced * larger(t->overlap, 0)) : 0, times = wall ? 1 : 2;
+    double radius = law[LAW_HERTZ] > 0 ? sqrt(t->reduced * larger(t->overlap, 0)) : 0;
+    double times = wall || hold_whole(body_hold(&w->bodies, row[1])) ? 1 : 2;  // a body that is held is a wall
     radius += law_radius_at_rest(law, t->reduced);
     double kn = law_stiffness(law, t->area_length, radius), kt = law_slide_stiffness(law, t->area_length, radius);
     add_stiffness(w, p->stiffness, row[0], arm[0], t->normal, times * kn, times * kt);
@@ -146,6 +147,16 @@ static const double *law_of(const dem_world *w, const dem_contact_columns *c, si
     return w->laws.rows + (c->law ? (size_t)LAW_SLOTS * c->law[at] : 0);
 }
 
+// whether a contact that does not touch counts: where it may hold, and all that are `listed`
+static bool counts(const dem_world *w, const dem_contact_columns *c, const dem_touch *t, bool listed)
+{
+    if (listed || t->overlap > 0)
+        return true;
+    // at the start nothing is bonded yet
+    bool may = w->features.jkr || w->steps == 0 || (c->bond && c->bond[t->place] > 0);
+    return may && t->overlap > -w->reach;
+}
+
 static void add_pairs(const dem_world *w, size_t row, bool listed, body_problem *p)
 {
     for (size_t i = w->pairs.adjacency_first[row]; i < w->pairs.adjacency_first[row + 1]; i++) {
@@ -153,7 +164,7 @@ static void add_pairs(const dem_world *w, size_t row, bool listed, body_problem 
         const dem_segment *s = &w->contacts.segments[pair->a / DEM_SEGMENT];
         for (size_t k = 0; k < pair->count; k++) {
             dem_touch t = dem_touch_of_pair(w, segment_place(s, pair->start + k));
-            if (!listed && t.overlap <= -w->reach)
+            if (!counts(w, &w->contacts.columns, &t, listed))
                 continue;
             dem_vec3 from_a = v3_sub(t.point, body_position(&w->bodies, pair->a));
             dem_vec3 from_b = v3_sub(t.point, v3_add(body_position(&w->bodies, pair->b), t.shift));
@@ -178,7 +189,7 @@ static void add_walls(const dem_world *w, size_t row, bool listed, body_problem 
                 continue;
             dem_touch t = dem_touch_of_wall(w, (dem_wall_form)form, at);
             dem_vec3 arm = v3_sub(t.point, body_position(&w->bodies, row));
-            if (t.overlap > -w->reach || (listed && form != DEM_FORM_MESH))
+            if (counts(w, &contacts->columns, &t, listed && form != DEM_FORM_MESH))
                 add_contact(w, p, &t, law_of(w, &contacts->columns, at), (uint32_t[]){(uint32_t)row, 0},
                             (dem_vec3[]){arm, arm}, true);
         }

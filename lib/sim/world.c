@@ -7,7 +7,9 @@
 #include "sim/contacts.h"
 #include "sim/lists.h"
 #include "sim/measure.h"
+#include "sim/motion.h"
 #include "sim/place.h"
+#include "sim/schemes.h"
 #include "sim/timestep.h"
 
 static const char *const pass_names[DEM_PASSES] = {
@@ -105,15 +107,35 @@ static dem_status make_lists(dem_world *w, dem_error *error)
     return dem_views_create(w, error);
 }
 
-// of the largest spheres, under the law that lets them hold farthest
-static double longest_reach(const dem_world *w)
+// under the law that lets surfaces hold farthest; of JKR for the largest spheres, of bonds for the smallest
+static dem_status set_reach(dem_world *w, dem_error *error)
 {
-    double radius = 0, reach = 0;
-    for (size_t row = 0; row < w->bodies.count; row++)
-        radius = larger(radius, w->templates.items[w->bodies.shape[row]].radius_max * body_scale(&w->bodies, row));
-    for (size_t i = 0; w->features.jkr && radius > 0 && i < w->laws.count; i++)
-        reach = larger(reach, law_reach(w->laws.rows + LAW_SLOTS * i, radius));
-    return reach;
+    double most = 0, least = INFINITY;
+    for (size_t row = 0; row < w->bodies.count; row++) {
+        const dem_template *t = &w->templates.items[w->bodies.shape[row]];
+        most = larger(most, t->radius_max * body_scale(&w->bodies, row));
+        least = smaller(least, t->radius_min * body_scale(&w->bodies, row));
+    }
+    for (size_t i = 0; (w->features.jkr || w->features.bonded) && most > 0 && i < w->laws.count; i++) {
+        const double *law = w->laws.rows + LAW_SLOTS * i;
+        double bond = law_bond_reach(law, least * least / (least + most));
+        if (!(bond <= least))
+            return dem_fail(error, DEM_BAD_INPUT,
+                            "breakable cohesion would hold until surfaces are %.3g m apart, more than the smallest "
+                            "radius, %.3g m; lower \"tension\" or \"gap\", or raise the stiffness",
+                            bond, least);
+        w->reach = larger(w->reach, larger(law_reach(law, most), bond));
+    }
+    return DEM_OK;
+}
+
+static void set_holds(dem_world *w, const dem_body_def *defs, size_t count)
+{
+    for (size_t i = 0; i < count; i++) {
+        w->held |= defs[i].hold != 0;
+        w->kept |= (defs[i].hold & (DEM_HOLD_VELOCITY | DEM_HOLD_SPIN)) != 0;
+    }
+    w->other_motion = w->held || !dem_schemes_default(w->integrator);
 }
 
 static dem_status make_state(dem_world *w, const dem_scene *scene, dem_error *error)
@@ -125,6 +147,7 @@ static dem_status make_state(dem_world *w, const dem_scene *scene, dem_error *er
     DEM_TRY(dem_laws_create(scene, &w->laws, error));
     DEM_TRY(dem_walls_create(w->ctx, scene, &w->walls, error));
     DEM_TRY(dem_place_bodies(w, scene, &defs, &count, error));
+    set_holds(w, defs, count);
     set_features(w, defs, count);
     dem_features still = w->features;
     still.moving = false;
@@ -138,12 +161,13 @@ static dem_status make_state(dem_world *w, const dem_scene *scene, dem_error *er
     w->team = dem_team_create(w->threads);
     if (!w->team)
         return dem_fail_memory(error);
-    w->reach = longest_reach(w);
+    DEM_TRY(set_reach(w, error));
     w->skin = larger(dem_broad_skin(w), 2.2 * w->reach);
     DEM_TRY(dem_search_create(w, error));
     if (w->periodic)
         DEM_TRY(dem_broad_images(w, error));
     DEM_TRY(make_lists(w, error));
+    DEM_TRY(dem_regions_create(scene, w->clumps, &w->regions, error));
     for (size_t i = 0; i < count; i++)
         w->asked[i] = (uint32_t)i;
     w->asked_count = count;
@@ -156,8 +180,18 @@ static dem_status make_state(dem_world *w, const dem_scene *scene, dem_error *er
     return DEM_OK;
 }
 
+static dem_status check_schemes(const dem_scene *scene, dem_error *error)
+{
+    if ((unsigned)scene->integrator.translation < DEM_TRANSLATION_SCHEMES &&
+        (unsigned)scene->integrator.rotation < DEM_ROTATION_SCHEMES)
+        return DEM_OK;
+    return dem_fail(error, DEM_USAGE, "integrator: there is no such scheme; take one of dem_translation, dem_rotation");
+}
+
 dem_status dem_world_create(const dem_ctx *ctx, const dem_scene *scene, dem_world **world, dem_error *error)
 {
+    *world = NULL;
+    DEM_TRY(check_schemes(scene, error));
     dem_world *w = *world = aligned_alloc(64, (sizeof *w + 63) / 64 * 64);
     if (!w)
         return dem_fail_memory(error);
@@ -165,6 +199,7 @@ dem_status dem_world_create(const dem_ctx *ctx, const dem_scene *scene, dem_worl
                      .domain = scene->domain,
                      .damping = scene->damping,
                      .multiple = scene->multiple,
+                     .integrator = scene->integrator,
                      .time_def = scene->time,
                      .ledger = scene->output.energy,
                      .threads = dem_threads(ctx),
@@ -212,6 +247,7 @@ void dem_world_destroy(dem_world *w)
     }
     dem_team_destroy(w->team);
     dem_views_release(&w->views);
+    dem_regions_release(w->regions);
     void *all[] = {w->clumps,         w->shape_names, w->shifts,     w->mesh_touches, w->tallies,
                    w->motion_tallies, w->asked,       w->part_asked, w->parts,        w->fresh,
                    w->candidates,     w->pushes,      w->strained,   w->part_strained};
@@ -273,7 +309,9 @@ static void motion_pass(dem_world *w, size_t begin, size_t end, double kick, siz
     size_t *asked_count = &w->part_asked[part], *strained_count = &w->part_strained[part];
     *asked_count = *strained_count = 0;
     bool damped = w->damping.local > 0 || w->damping.viscous > 0;
-    bool tally = (damped || w->features.roll_bound) && w->ledger;
+    bool tally = (damped || w->features.roll_bound || w->kept) && w->ledger;
+    double turn_kick = dem_motion_turn_kick(w);
+    void (*move)(const dem_rows *, dem_motion_job *) = w->other_motion ? dem_motion_any : w->kernels->move;
     // the last part moves the rows that fill up, too
     size_t last = end == w->segment_count ? w->bodies.padded : end * DEM_SEGMENT;
     for (size_t from = begin * DEM_SEGMENT; from < last;) {
@@ -294,11 +332,17 @@ static void motion_pass(dem_world *w, size_t begin, size_t end, double kick, siz
                               .vector = w->damping.local_frame == DEM_LOCAL_VECTOR,
                               .exclude_gravity = w->damping.exclude_gravity,
                               .bounded = w->features.roll_bound,
+                              .schemes = w->integrator,
+                              .last_step = w->last_step,
+                              .turn_kick = turn_kick,
+                              .hold = w->bodies.hold,
+                              .kept = w->bodies.kept,
+                              .turning = w->bodies.turning,
                               .tally = tally && segment < w->segment_count ? &w->motion_tallies[segment] : NULL,
                               .strain_limit = w->bodies.strain_limit,
                               .strained = w->strained + begin * DEM_SEGMENT + *strained_count,
                               .asked = asked + *asked_count};
-        w->kernels->move(&rows, &job);
+        move(&rows, &job);
         *asked_count += job.asked_count;
         *strained_count += job.strained_count;
         from = to;
@@ -327,7 +371,7 @@ static void step_part(void *user, int which)
 {
     dem_world *w = user;
     size_t part = (size_t)which;
-    double kick = (w->last_step + w->next_step) / 2;
+    double kick = dem_motion_kick(w);
     size_t begin = w->parts[part], end = w->parts[part + 1];
     double t0 = dem_clock();
     if (w->mesh_touches)
@@ -379,7 +423,7 @@ static void set_time(dem_world *w)
 
 static dem_status step_once(dem_world *w, dem_error *error)
 {
-    double kick = (w->last_step + w->next_step) / 2;
+    double kick = dem_motion_kick(w);
     if (w->bodies.before)
         memcpy(w->bodies.before, w->bodies.momentum, w->bodies.padded * DEM_ROW * sizeof *w->bodies.before);
     w->wall_path += w->next_step * w->sweep_speed;

@@ -52,7 +52,7 @@ for page in "$share"/man/man1/*.1; do
         mandoc -Tlint -W warning "$page" >said || fail "$name.1: mandoc says $(head -3 said)"
     fi
 done
-for tool in dem-clump dem-grain dem-run dem-view; do
+for tool in dem-clump dem-grain dem-run dem-study dem-view; do
     [ -s "$share/man/man1/$tool.1" ] || fail "no man page of $tool"
     run 0 $tool --version
     prints "^$tool [0-9]+\.[0-9]+\.[0-9]+\$"
@@ -72,7 +72,7 @@ offers() {
     [ "$got" = "$wanted" ] || fail "bash: behind '$*': '$got', not '$wanted'"
 }
 mkdir files && cd files && mkdir deep && touch a.stl b.obj
-for tool in dem-clump dem-grain dem-run dem-view; do
+for tool in dem-clump dem-grain dem-run dem-study dem-view; do
     . "$share/bash-completion/completions/$tool"
     [ "$(complete -p $tool)" = "complete -F _${tool//-/_} $tool" ] || fail "bash: $tool is not completed"
 done

@@ -108,7 +108,7 @@ done
 
 # the rest is in its place
 share="$work/moved/share"
-for tool in dem-clump dem-grain dem-run dem-view; do
+for tool in dem-clump dem-grain dem-run dem-study dem-view; do
     for file in "$work/moved/bin/$tool" "$share/man/man1/$tool.1" "$share/bash-completion/completions/$tool" \
         "$share/zsh/site-functions/_$tool" "$share/fish/vendor_completions.d/$tool.fish"; do
         [ -s "$file" ] || { echo "not installed: $file"; exit 1; }

@@ -142,9 +142,17 @@ mentions 'nowhere.json: no such file'
 sed 's/"stiffness"/"stifness"/' box.json >typo.json
 run 3 dem-run typo.json
 says 'dem-run: error: typo.json:6: unknown key "stifness" (column 36); did you mean "stiffness"?'
-sed 's/"friction": {/"friction": { "static_coefficient": 1,/' box.json >later.json
-run 3 dem-run later.json
-mentions 'not built yet'
 run 4 dem-run box.json --steps 5 -q -o /proc/nowhere
 one_line
+# ---- what else can be measured and written
+run 0 dem-run box.json -q -o net -D output.contacts=10ms -D 'measures={"foot": {"box": [[0, 0, 0], [0.2, 0.2, "5 cm"]]}}'
+silent
+[ "$(ls net/frames/contacts_*.vtp | wc -l)" = 3 ] && [ "$(ls net/frames/0*.vtp | wc -l)" = 5 ] || fail "$(ls net/frames)"
+[ "$(grep -c 'file="frames/contacts_' net/contacts.pvd)" = 3 ] || fail "not 3 files in contacts.pvd"
+head -1 net/series.csv | grep -q ',foot_stress_xx_Pa,.*,foot_void_ratio,' || fail "no columns of the region"
+cut -d, -f1-20 net/series.csv | cmp -s - <(cut -d, -f1-20 straight/series.csv) || fail "measuring changes the run"
+run 0 dem-run box.json --explain -D 'measures={"all": {"whole": true}}'
+prints '^measures: stress, fabric and packing of 1 region with every row of the series, nothing in a step$'
+run 3 dem-run box.json --check -D 'measures={"a": {"ball": {"centre": [0, 0, 0], "radius": -1}}}'
+mentions 'must be above 0'
 finish

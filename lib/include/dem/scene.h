@@ -66,8 +66,15 @@ typedef enum dem_twisting_law {
 
 typedef enum dem_cohesion_law {
     DEM_COHESION_NONE,
-    DEM_COHESION_SJKR,  ///< pull by an energy density times the area of the overlap
+    DEM_COHESION_SJKR,       ///< pull by an energy density times the area of the overlap
+    DEM_COHESION_BREAKABLE,  ///< surfaces hold, both ways, until the pull or the shear is too large
 } dem_cohesion_law;
+
+/// When surfaces of breakable cohesion are bonded. What has broken stays so until they have parted.
+typedef enum dem_bonded {
+    DEM_BONDED_AT_START,  ///< those that touch when the run starts (nearer than the gap), as contact bonds of PFC
+    DEM_BONDED_AT_TOUCH,  ///< these, and all that come to touch later
+} dem_bonded;
 
 /// The law between two materials.
 typedef struct dem_pair_law {
@@ -81,6 +88,8 @@ typedef struct dem_pair_law {
     dem_tail tail;
     dem_friction_law friction;
     double friction_coefficient;  ///< [-]
+    double static_coefficient;    ///< at rest: mu = mu_d + (mu_s - mu_d) exp(-decay |v_t|) [-]; NAN: the same
+    double friction_decay;        ///< how fast friction falls with the speed [s/m]
     double tangential_stiffness;  ///< of the linear law [N/m]; NAN: stiffness_ratio of the normal one
     double stiffness_ratio;       ///< k_t / k_n [-]
     double tangential_rate;       ///< c_t = m_eff G_t [1/s]; NAN: c_t = c_n sqrt(k_t / k_n) with a restitution, else 0
@@ -94,6 +103,10 @@ typedef struct dem_pair_law {
     double twisting_coefficient;  ///< mu_tw of the constant law [-]
     dem_cohesion_law cohesion;
     double energy_density;  ///< of SJKR [J/m^3]
+    double bond_tension;    ///< strength of breakable cohesion: largest pull [N]
+    double bond_shear;      ///< and largest tangential force [N]
+    dem_bonded bonded;
+    double bond_gap;  ///< surfaces nearer than this are bonded at the start [m]
 } dem_pair_law;
 
 /// One kind of grain. Exactly one of `clump_file`, `clump`, `sphere_radius` tells its form.
@@ -105,6 +118,19 @@ typedef struct dem_shape_def {
     uint32_t material;
 } dem_shape_def;
 
+/// What of a body's motion is held, as bits: components in the axes of space that stay 0, or its velocity and spin,
+/// which stay what they are at the start. A fixed body has both held at 0. What holds it does work (dem_energy).
+typedef enum dem_hold {
+    DEM_LOCK_X = 1,
+    DEM_LOCK_Y = 2,
+    DEM_LOCK_Z = 4,
+    DEM_LOCK_RX = 8,  ///< turning about x
+    DEM_LOCK_RY = 16,
+    DEM_LOCK_RZ = 32,
+    DEM_HOLD_VELOCITY = 64,
+    DEM_HOLD_SPIN = 128,
+} dem_hold;
+
 /// One body as it starts, velocities at the time of the position.
 typedef struct dem_body_def {
     uint32_t shape;
@@ -113,6 +139,7 @@ typedef struct dem_body_def {
     dem_quat orientation;  ///< principal frame -> space
     dem_vec3 velocity;     ///< [m/s]
     dem_vec3 spin;         ///< angular velocity, axes of space [rad/s]
+    uint32_t hold;         ///< bits of dem_hold
 } dem_body_def;
 
 typedef enum dem_size_law {
@@ -151,6 +178,7 @@ typedef struct dem_fill_def {
     double void_ratio;   ///< of the box: volume of voids / volume of solids [-]
     double gap;          ///< least distance between surfaces [m]
     dem_vec3 velocity;   ///< of all [m/s]
+    uint32_t hold;       ///< of all, bits of dem_hold
     uint64_t seed;
 } dem_fill_def;
 
@@ -200,6 +228,33 @@ typedef struct dem_damping_def {
     double viscous;        ///< F = -c m v, T = -c L [1/s]
 } dem_damping_def;
 
+/// How positions follow from forces, one evaluation of the forces a step (PHYSICS 2.1).
+typedef enum dem_translation {
+    DEM_TRANSLATION_CENTRAL,           ///< v(n+1/2) = v(n-1/2) + a h, x += v(n+1/2) h: order 2, symplectic
+    DEM_TRANSLATION_SYMPLECTIC_EULER,  ///< v += a h, x += v h, velocities said to be of the time of the positions
+    DEM_TRANSLATION_VELOCITY_VERLET,   ///< two half kicks about the step: the trajectory of `central`
+    DEM_TRANSLATION_TAYLOR,            ///< x += v h + a h^2 / 2, v += a h: grows by sqrt(1 + (w h)^2 / 2) a step
+    DEM_TRANSLATION_FORWARD_EULER,     ///< x += v h, v += a h: grows by sqrt(1 + (w h)^2) a step
+    DEM_TRANSLATION_NEWMARK,           ///< explicit, beta 0 and gamma 1/2: the trajectory of `central`
+} dem_translation;
+
+/// How orientations follow from moments (PHYSICS 2.2).
+typedef enum dem_rotation {
+    DEM_ROTATION_LSYM,          ///< angular momentum at half steps, free rotor by a symmetric top between half turns
+    DEM_ROTATION_LSYM4,         ///< the same with five turns of order 4 (Suzuki 1990)
+    DEM_ROTATION_SPIRAL,        ///< leapfrog form of SPIRAL (del Valle et al. 2024)
+    DEM_ROTATION_NO_SQUISH,     ///< turns about single axes in the order 3, 2, 1, 2, 3 (Miller et al. 2002)
+    DEM_ROTATION_OMELYAN,       ///< angular velocity in the body by fixed-point iteration (Omelyan 1998)
+    DEM_ROTATION_FINCHAM,       ///< angular momentum at half steps, orientation by a half step (Fincham 1992)
+    DEM_ROTATION_WALTON_BRAUN,  ///< angular velocity in the body, its rate carried on (Walton & Braun 1993)
+    DEM_ROTATION_PCDM,          ///< predictor and corrector, direct multiplication (Zhao & van Wachem 2013)
+} dem_rotation;
+
+typedef struct dem_integrator_def {
+    dem_translation translation;
+    dem_rotation rotation;
+} dem_integrator_def;
+
 /// How several contacts of one pair of bodies add up.
 typedef enum dem_multiple { DEM_MULTIPLE_SUM, DEM_MULTIPLE_MEAN, DEM_MULTIPLE_MERGE } dem_multiple;
 
@@ -210,10 +265,27 @@ typedef struct dem_time_def {
     double contact_steps;  ///< least number of automatic steps in the shortest contact [-]; 0: stability alone
 } dem_time_def;
 
+typedef enum dem_region {
+    DEM_REGION_WHOLE,  ///< the domain; where it is open, the box that holds all spheres
+    DEM_REGION_BOX,
+    DEM_REGION_BALL,
+} dem_region;
+
+/// A region whose stress, fabric and packing are measured whenever the world is; it does not move.
+typedef struct dem_measure_def {
+    const char *name;
+    dem_region region;
+    dem_vec3 low, high;  ///< of a box [m]
+    dem_vec3 centre;     ///< of a ball [m]
+    double radius;       ///< of a ball [m]
+    bool kinetic;        ///< the stress with that of the bodies' motion about their mean
+} dem_measure_def;
+
 typedef struct dem_output_def {
     const char *directory;
     double frames;         ///< interval [s]; 0: none
     double series;         ///< interval [s]; 0: none
+    double contacts;       ///< interval of the network of contacts [s]; 0: none
     double checkpoint;     ///< interval [s]; 0: none
     bool checkpoint_wall;  ///< the interval is of the clock on the wall
     bool energy;           ///< keep the energy ledger
@@ -222,7 +294,8 @@ typedef struct dem_output_def {
 /// A whole scene. Arrays are borrowed; those of a scene that was read belong to `owner`.
 typedef struct dem_scene {
     const char *title;
-    dem_vec3 gravity;  ///< [m/s^2]
+    unsigned dimension;  ///< 3, or 2: bodies keep their z and turn about it only
+    dem_vec3 gravity;    ///< [m/s^2]
     dem_time_def time;
     dem_domain_def domain;
     const dem_material *materials;
@@ -235,7 +308,10 @@ typedef struct dem_scene {
     const dem_wall_def *walls;
     size_t wall_count;
     dem_damping_def damping;
+    dem_integrator_def integrator;
     dem_multiple multiple;
+    const dem_measure_def *measures;
+    size_t measure_count;
     dem_output_def output;
     struct dem_scene_owner *owner;
 } dem_scene;

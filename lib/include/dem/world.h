@@ -69,6 +69,20 @@ typedef struct dem_wall_view {
     size_t contacts;
 } dem_wall_view;
 
+/// What was found in a region that the scene measures. Pressure is positive.
+typedef struct dem_measure_view {
+    double volume;        ///< of the region [m^3]
+    double solid_volume;  ///< of the grains in it, parts of those across its border counted as such [m^3]
+    double void_ratio;    ///< volume of voids over that of solids; INFINITY: no solid [-]
+    double coordination;  ///< mean number of bodies and walls touched by bodies whose centres are in it [-]
+    dem_sym3 stress;      ///< sum of F l / V, symmetric part; see lib/sim/region.h [Pa]
+    double mean_stress;   ///< p = trace / 3 [Pa]
+    double deviatoric_stress;  ///< q = sqrt(3/2 s:s) [Pa]
+    dem_sym3 fabric;           ///< mean of n n over the contacts of bodies in it; its trace is 1 [-]
+    size_t bodies;             ///< whose centres are in it
+    size_t contacts;           ///< of bodies with each other, in it
+} dem_measure_view;
+
 /// The energy ledger; what was dissipated and what walls have done is summed since the scene's start [J].
 typedef struct dem_energy {
     double kinetic, rotational;  ///< of translation, of rotation
@@ -76,6 +90,7 @@ typedef struct dem_energy {
     double elastic;              ///< in the contacts
     double friction;             ///< dissipated by sliding
     double viscous;              ///< dissipated by the dashpots of contacts
+    double broken;               ///< let go by bonds that broke
     double local;                ///< dissipated by local damping
     double drag;                 ///< dissipated by global viscous damping
     double work;                 ///< done by moving walls and pushes
@@ -105,6 +120,9 @@ DEM_API const dem_figures *dem_world_figures(const dem_world *world);
 DEM_API dem_body_view dem_world_bodies(const dem_world *world);
 DEM_API const dem_contact *dem_world_contacts(const dem_world *world, size_t *count);
 DEM_API const dem_wall_view *dem_world_walls(const dem_world *world, size_t *count);
+
+/// Of the scene's measures, in their order.
+DEM_API const dem_measure_view *dem_world_measures(const dem_world *world, size_t *count);
 
 /// A shape as the world runs it: its clump in the principal frame (owned by the world).
 DEM_API const dem_clump *dem_world_clump(const dem_world *world, uint32_t shape);

@@ -1,0 +1,187 @@
+#include "out/network.h"
+
+#include <dirent.h>
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+#include "base/file.h"
+#include "base/memory.h"
+#include "math/vec.h"
+#include "out/pvd.h"
+#include "out/vtp.h"
+
+static const char INDEX[] = "contacts.pvd", PREFIX[] = "contacts_";
+
+struct dem_network {
+    char *directory;
+    dem_domain_def domain;
+    dem_pvd index;
+};
+
+// ---- beginning
+
+// the numbered files from `first` on
+static dem_status remove_files(const dem_network *n, size_t first, dem_error *error)
+{
+    char *path = dem_path_join(n->directory, "frames");
+    if (!path)
+        return dem_fail_memory(error);
+    DIR *listing = opendir(path);
+    const struct dirent *entry;
+    while (listing && (entry = readdir(listing))) {
+        const char *name = entry->d_name, *at = name + strlen(PREFIX);
+        long number;
+        if (strncmp(name, PREFIX, strlen(PREFIX)) != 0)
+            continue;
+        const char *rest = dem_parse_long(at, name + strlen(name), &number);
+        if (rest && rest - at >= 6 && strcmp(rest, ".vtp") == 0 && number >= 0 && (size_t)number >= first)
+            unlinkat(dirfd(listing), name, 0);
+    }
+    if (listing)
+        closedir(listing);
+    free(path);
+    return DEM_OK;
+}
+
+static dem_status begin(dem_network *n, double resume, dem_error *error)
+{
+    char *folder = n->directory ? dem_path_join(n->directory, "frames") : NULL;
+    dem_status status = folder ? dem_folder_create(folder, error) : dem_fail_memory(error);
+    free(folder);
+    DEM_TRY(status);
+    if (isnan(resume)) {
+        char *index = dem_path_join(n->directory, "%s", INDEX);
+        if (!index)
+            return dem_fail_memory(error);
+        unlink(index);
+        free(index);
+    }
+    DEM_TRY(dem_pvd_open(n->directory, INDEX, resume, &n->index, error));
+    return remove_files(n, n->index.count, error);
+}
+
+dem_status dem_network_open(const char *directory, const dem_domain_def *domain, double resume, dem_network **network,
+                            dem_error *error)
+{
+    dem_network *n = *network = dem_alloc_zero(1, sizeof *n);
+    if (!n)
+        return dem_fail_memory(error);
+    n->domain = *domain;
+    n->directory = strdup(directory);
+    dem_status status = begin(n, resume, error);
+    if (status != DEM_OK) {
+        dem_network_close(n);
+        *network = NULL;
+    }
+    return status;
+}
+
+void dem_network_close(dem_network *n)
+{
+    if (!n)
+        return;
+    dem_pvd_release(&n->index);
+    free(n->directory);
+    free(n);
+}
+
+// ---- lines
+
+typedef struct columns {
+    dem_vec3 *points, *force;
+    uint32_t *ends;
+    double *normal_force, *friction_force, *overlap;
+    int32_t *kind, *body, *other, *wall;
+} columns;
+
+static bool make_columns(columns *c, size_t n)
+{
+    *c = (columns){dem_alloc(2 * n, sizeof *c->points),     dem_alloc(n, sizeof *c->force),
+                   dem_alloc(2 * n, sizeof *c->ends),       dem_alloc(n, sizeof *c->normal_force),
+                   dem_alloc(n, sizeof *c->friction_force), dem_alloc(n, sizeof *c->overlap),
+                   dem_alloc(n, sizeof *c->kind),           dem_alloc(n, sizeof *c->body),
+                   dem_alloc(n, sizeof *c->other),          dem_alloc(n, sizeof *c->wall)};
+    return c->points && c->force && c->ends && c->normal_force && c->friction_force && c->overlap && c->kind &&
+           c->body && c->other && c->wall;
+}
+
+static void release_columns(columns *c)
+{
+    void *all[] = {c->points,  c->force, c->ends, c->normal_force, c->friction_force,
+                   c->overlap, c->kind,  c->body, c->other,        c->wall};
+    for (size_t i = 0; i < sizeof all / sizeof *all; i++)
+        free(all[i]);
+}
+
+// of a body's images the one that is nearest to a point
+static dem_vec3 image_near(const dem_domain_def *d, dem_vec3 x, dem_vec3 point)
+{
+    for (int k = 0; k < 3; k++)
+        if (d->periodic[k]) {
+            double side = v3_get(d->high, k) - v3_get(d->low, k);
+            v3_set(&x, k, v3_get(x, k) + side * round((v3_get(point, k) - v3_get(x, k)) / side));
+        }
+    return x;
+}
+
+static void set_line(const dem_network *n, columns *c, size_t i, const dem_body_view *bodies,
+                     const dem_contact *contact)
+{
+    bool wall = contact->other == UINT32_MAX;
+    dem_vec3 x = bodies->position[contact->body], point = image_near(&n->domain, contact->point, x);
+    c->points[2 * i] = x;
+    c->points[2 * i + 1] = wall ? point : image_near(&n->domain, bodies->position[contact->other], point);
+    c->ends[2 * i] = (uint32_t)(2 * i);
+    c->ends[2 * i + 1] = (uint32_t)(2 * i + 1);
+    c->force[i] = v3_along(contact->friction_force, -contact->normal_force, contact->normal);
+    c->normal_force[i] = contact->normal_force;
+    c->friction_force[i] = v3_norm(contact->friction_force);
+    c->overlap[i] = contact->overlap;
+    c->kind[i] = wall;
+    c->body[i] = (int32_t)contact->body;
+    c->other[i] = wall ? -1 : (int32_t)contact->other;
+    c->wall[i] = wall ? (int32_t)contact->wall : -1;
+}
+
+static dem_status write_lines(const char *path, double time, const columns *c, size_t count, dem_error *error)
+{
+    const dem_vtp_array arrays[] = {{"normal_force", DEM_VTP_FLOAT64, 1, c->normal_force},
+                                    {"friction_force", DEM_VTP_FLOAT64, 1, c->friction_force},
+                                    {"force", DEM_VTP_FLOAT64, 3, c->force},
+                                    {"overlap", DEM_VTP_FLOAT64, 1, c->overlap},
+                                    {"kind", DEM_VTP_INT32, 1, c->kind},
+                                    {"body", DEM_VTP_INT32, 1, c->body},
+                                    {"other", DEM_VTP_INT32, 1, c->other},
+                                    {"wall", DEM_VTP_INT32, 1, c->wall}};
+    return dem_vtp_write(path,
+                         &(dem_vtp){.time = time,
+                                    .points = c->points,
+                                    .point_count = 2 * count,
+                                    .lines = c->ends,
+                                    .line_count = count,
+                                    .cell_arrays = arrays,
+                                    .cell_array_count = sizeof arrays / sizeof *arrays},
+                         error);
+}
+
+dem_status dem_network_write(dem_network *n, double time, const dem_body_view *bodies, const dem_contact *contacts,
+                             size_t count, dem_error *error)
+{
+    char name[40];
+    columns c;
+    snprintf(name, sizeof name, "frames/%s%06zu.vtp", PREFIX, n->index.count);
+    char *path = dem_path_join(n->directory, "%s", name);
+    dem_status status = make_columns(&c, count) && path ? DEM_OK : dem_fail_memory(error);
+    for (size_t i = 0; i < count && status == DEM_OK; i++)
+        set_line(n, &c, i, bodies, &contacts[i]);
+    if (status == DEM_OK)
+        status = write_lines(path, time, &c, count, error);
+    if (status == DEM_OK)
+        status = dem_pvd_add(&n->index, time, name, NULL, error);
+    release_columns(&c);
+    free(path);
+    return status;
+}

@@ -1,0 +1,24 @@
+#include "study/verify.h"
+
+#include <string.h>
+
+static const dem_case *const parts[] = {
+    dem_verify_chung_ooi,
+};
+
+const dem_case *dem_verify_case(size_t index)
+{
+    for (size_t i = 0; i < sizeof parts / sizeof *parts; i++)
+        for (const dem_case *c = parts[i]; c->name; c++)
+            if (index-- == 0)
+                return c;
+    return NULL;
+}
+
+bool dem_verify_meant(const dem_case *c, const char *word)
+{
+    size_t length = strlen(word);
+    if (length && word[length - 1] == '*')
+        return strncmp(c->name, word, length - 1) == 0;
+    return strncmp(c->name, word, length) == 0 && (c->name[length] == 0 || c->name[length] == '-');
+}

@@ -1,0 +1,15 @@
+/// All cases with a known answer, in the order of their table. Each is run by `dem-study verify` and by the tests.
+#ifndef DEM_STUDY_VERIFY_H
+#define DEM_STUDY_VERIFY_H
+
+#include "study/trial.h"
+
+/// NULL behind the last.
+const dem_case *dem_verify_case(size_t index);
+/// Whether a case is meant by a word: its name, or what comes before a '-' or '*' of it ("jkr", "chung-ooi-4").
+bool dem_verify_meant(const dem_case *c, const char *word);
+
+/// The parts of the table, each of one file; a part ends with a case without a name.
+extern const dem_case dem_verify_chung_ooi[];
+
+#endif

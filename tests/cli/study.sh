@@ -1,0 +1,67 @@
+#!/bin/bash
+# dem-study: the studies, their tables, and what is said when things are wrong.
+. "$(dirname "$0")/check.bash"
+
+run 2 dem-study
+mentions 'name a study, one of .*verify'
+run 2 dem-study verfy
+one_line
+mentions "there is no study 'verfy'; there is .*verify"
+run 0 dem-study --help
+
+# ---- verify
+run 0 dem-study verify --list
+prints '^chung-ooi-1 .*(Chung & Ooi 2011, test 1)'
+run 0 dem-study verify chung-ooi-7 'chung-ooi-1*'
+prints '^passed +chung-ooi-1 '
+prints '^passed +chung-ooi-7 '
+prints '^2 cases, .* figures: 2 passed, 0 failed, 0 skipped$'
+run 0 dem-study verify chung-ooi-1 --all
+prints 'glass: largest force +10696\.9 +10696\.9 .* N'
+run 0 dem-study verify chung-ooi-1 --json
+python3 -c 'import json; d = json.load(open("out")); assert d["passed"] == 1 and d["failed"] == 0
+f = d["cases"][0]["findings"][0]; assert abs(f["got"] - 10696.889) < 0.01 and f["unit"] == "N" and f["passed"]' ||
+    fail 'JSON of verify'
+run 0 dem-study verify chung-ooi-1 -q -o v.html -o v.csv
+[ ! -s out ] || fail 'something is said though -q'
+head -1 v.csv | grep -q '^case,what,unit,bound,expected,got,tolerance,verdict,source$' || fail 'head of v.csv'
+grep -q '<h2>chung-ooi-1</h2>' v.html || fail 'no case in v.html'
+python3 -c 'import xml.dom.minidom; xml.dom.minidom.parse("v.html")' || fail 'v.html is no XML'
+run 2 dem-study verify nothing
+says "dem-study verify: error: there is no case 'nothing'; --list shows all; see dem-study verify --help"
+run 2 dem-study verify -o v.pdf
+says "dem-study verify: error: 'v.pdf' names no form that can be written; end it in .html or .csv; see dem-study verify --help"
+run 4 dem-study verify full-slip -q -o /nowhere/v.csv
+
+# ---- mohr-coulomb: phi = 30 degrees, c = 5 kPa
+cat >tests.csv <<'END'
+# s1 = s3 (1 + sin) / (1 - sin) + 2 c cos / (1 - sin)
+name, sigma3_kPa, sigma1_kPa
+a, 0, 17.3205080757
+b, 10, 47.3205080757
+c, 50, 167.3205080757
+END
+run 0 dem-study mohr-coulomb tests.csv -o m.svg -o m.html -o m.csv
+prints '^  friction angle  .* 30 deg$'
+prints '^  cohesion  .* 5000 Pa$'
+prints 'axial stress.* 17320\.508 Pa$'
+prints 'shear stress.* 8660\.254 Pa$'
+for file in m.svg m.html; do
+    python3 -c 'import sys, xml.dom.minidom; xml.dom.minidom.parse(sys.argv[1])' $file || fail "$file is no XML"
+done
+[ "$(grep -c '<path' m.svg)" = 3 ] || fail 'not three circles'
+head -1 m.csv | grep -q '^friction_angle_deg,' || fail 'head of m.csv'
+run 0 dem-study mohr-coulomb tests.csv --json --unit kPa
+prints '"cohesion_Pa": (5000|4999\.9|5000\.0)'
+head -2 tests.csv >none.csv
+run 3 dem-study mohr-coulomb none.csv
+says 'dem-study mohr-coulomb: error: none.csv: a line needs two tests and should have three or more; there are 0'
+printf 'sigma1,sigma2\n1,2\n' >none.csv
+run 3 dem-study mohr-coulomb none.csv
+mentions '^dem-study mohr-coulomb: error: none.csv:1: has no column sigma3; begin the table'
+printf 'sigma1,sigma3\n3,2\n1,x\n' >none.csv
+run 3 dem-study mohr-coulomb none.csv
+mentions 'none.csv:3: sigma3 is no number'
+run 2 dem-study mohr-coulomb tests.csv --unit mm
+mentions '-unit: '
+finish
