@@ -250,6 +250,26 @@ static void materials_that_can_meet_need_a_law(void **state)
     dem_scene_release(&s);
 }
 
+static void soft_contacts_refuse_what_they_do_not_have(void **state)
+{
+    (void)state;
+#define SOFT_WITH(law)                                                                                                 \
+    S "'materials': {'a': {'density': 1, 'young': 1e9, 'poisson': 0.2}},\n'contacts': [{'between': ['a', 'a'], " law     \
+      "}],\n'contacts_between_clumps': 'soft'}"
+    static const refusal cases[] = {
+        {SOFT_WITH("'normal': {'stiffness': 1}, 'rolling': {'law': 'bounded', 'coefficient': 0.1}"), 4,
+         "contacts_between_clumps: is 'soft', which does not go with the rolling resistance of contacts 0 (column 28); "
+         "take 'sum', or leave that out"},
+        {SOFT_WITH("'normal': {'law': 'jkr', 'work_of_adhesion': 1}"), 4, "~does not go with the adhesion"},
+        {SOFT_WITH("'normal': {'stiffness': 1}, 'cohesion': {'law': 'sjkr', 'energy_density': 1}"), 4, "~the cohesion"},
+        {S "'soft': {'tau': 1e-6}}", 2,
+         "soft: is of contacts_between_clumps 'soft', which is not set (column 9); set it, or leave this out"},
+        {S "'contacts_between_clumps': 'soft', 'soft': {'tau': 0}}", 2, "~must be above 0"},
+        {S "'contacts_between_clumps': 'soft', 'soft': {'tau': 'big'}}", 2, "~tau"},
+    };
+    CHECK_REFUSALS(cases);
+}
+
 static void wrong_shapes_are_refused(void **state)
 {
     (void)state;
@@ -386,11 +406,12 @@ static void what_is_not_built_is_never_ignored(void **state)
         {S "'inlets': [1]}", 2, "~is not built yet"},
         {S "'bonds': {'a': {}}}", 2, "~is not built yet"},
         {S "'bonds': 5}", 2, "~is not built yet"},
-        {S "'damping': {'drag': {}}}", 2, "~is not built yet"},
+        {S "'damping': {'drag': {}}}", 2, "~'density' is missing"},
+        {S "'damping': {'drag': {'density': 1, 'viscosity': -1}}}", 2, "~must be at least 0"},
+        {S "'damping': {'drag': {'density': 1, 'viscosity': '1 Pa'}}}", 2, "~viscosity"},
         {S "'dimension': 4}", 2, "dimension: must be at least 2 and at most 3, not 4 (column 14); correct it"},
         {S "'dimension': '2D'}", 2, "~needs a whole number"},
         {S "'integrator': {'rotation': 'lsim'}}", 2, "unknown rotation 'lsim' (column 28); did you mean 'lsym'?"},
-        {S "'contacts_between_clumps': 'soft'}", 2, "~is not built yet"},
     };
     CHECK_REFUSALS(cases);
 }
@@ -418,6 +439,7 @@ int main(void)
         cmocka_unit_test(numbers_out_of_range_are_refused),
         cmocka_unit_test(wrong_laws_are_refused),
         cmocka_unit_test(materials_that_can_meet_need_a_law),
+        cmocka_unit_test(soft_contacts_refuse_what_they_do_not_have),
         cmocka_unit_test(wrong_shapes_are_refused),
         cmocka_unit_test(wrong_bodies_are_refused),
         cmocka_unit_test(wrong_walls_are_refused),

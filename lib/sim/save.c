@@ -63,15 +63,13 @@ static uint64_t hash_constants(const dem_world *w)
         w->domain.high,
         {w->damping.local, w->damping.viscous, w->damping.local_frame + 2 * w->damping.exclude_gravity}};
     h = hash_bytes(h, loads, sizeof loads);
-    double numbers[9] = {w->time_def.step,
-                         w->multiple,
-                         w->domain.periodic[0],
-                         w->domain.periodic[1],
-                         w->domain.periodic[2],
-                         w->integrator.translation,
-                         w->integrator.rotation,
-                         w->held,
-                         w->kept};
+    const dem_drag_def *drag = &w->damping.drag;
+    double motion[] = {
+        w->integrator.translation, w->integrator.rotation, w->held,          w->kept,          drag->density,
+        drag->viscosity,           drag->velocity.x,       drag->velocity.y, drag->velocity.z, drag->buoyancy};
+    h = hash_bytes(h, motion, sizeof motion);
+    double numbers[] = {w->time_def.step,      w->multiple,           w->domain.periodic[0],
+                        w->domain.periodic[1], w->domain.periodic[2], w->soft.tau};
     return hash_bytes(h, numbers, sizeof numbers);
 }
 
@@ -325,7 +323,8 @@ dem_status dem_world_restore(dem_world *w, const void *bytes, size_t size, dem_e
     // where momenta of other domains go is made anew
     for (size_t i = 0; i < w->segment_count; i++)
         w->contacts.segments[i].dirty = true;
-    return dem_contacts_rebuild(w, error);
+    DEM_TRY(dem_contacts_rebuild(w, error));
+    return w->features.soft ? dem_soft_reserve(w, error) : DEM_OK;
 }
 
 uint64_t dem_world_hash(const dem_world *w)

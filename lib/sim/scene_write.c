@@ -443,6 +443,17 @@ static void put_damping(dem_json_writer *w, const dem_damping_def *damping)
     dem_json_put_string(w, "local_frame", damping->local_frame == DEM_LOCAL_VECTOR ? "vector" : "space");
     dem_json_put_bool(w, "exclude_gravity", damping->exclude_gravity);
     dem_json_put_number(w, "viscous", damping->viscous);
+    const dem_drag_def *drag = &damping->drag;
+    if (!(drag->density > 0 || drag->viscosity > 0))
+        dem_json_put_raw(w, "drag", "null");
+    else {
+        dem_json_open_object(w, "drag");
+        dem_json_put_number(w, "density", drag->density);
+        dem_json_put_number(w, "viscosity", drag->viscosity);
+        put_vec(w, "velocity", drag->velocity);
+        dem_json_put_bool(w, "buoyancy", drag->buoyancy);
+        dem_json_close(w, '}');
+    }
     dem_json_close(w, '}');
 }
 
@@ -491,7 +502,8 @@ static void put_output(dem_json_writer *w, const dem_output_def *output)
 static dem_status put_scene(dem_json_writer *w, const dem_scene *scene, dem_error *error)
 {
     static const char *const multiples[] = {
-        [DEM_MULTIPLE_SUM] = "sum", [DEM_MULTIPLE_MEAN] = "mean", [DEM_MULTIPLE_MERGE] = "merge"};
+        [DEM_MULTIPLE_SUM] = "sum", [DEM_MULTIPLE_MEAN] = "mean", [DEM_MULTIPLE_MERGE] = "merge",
+        [DEM_MULTIPLE_SOFT] = "soft"};
     dem_json_open_object(w, NULL);
     dem_json_put_string(w, "schema", "dem-scene/1");
     dem_json_put_string(w, "title", text_of(scene->title));
@@ -510,6 +522,14 @@ static dem_status put_scene(dem_json_writer *w, const dem_scene *scene, dem_erro
     dem_json_put_string(w, "rotation", dem_rotations[scene->integrator.rotation].name);
     dem_json_close(w, '}');
     dem_json_put_string(w, "contacts_between_clumps", multiples[scene->multiple]);
+    if (scene->multiple == DEM_MULTIPLE_SOFT) {
+        dem_json_open_object(w, "soft");
+        if (scene->soft.tau > 0)
+            dem_json_put_number(w, "tau", scene->soft.tau);
+        else
+            dem_json_put_string(w, "tau", "auto");
+        dem_json_close(w, '}');
+    }
     put_measures(w, scene);
     put_output(w, &scene->output);
     dem_json_close(w, '}');

@@ -5,6 +5,7 @@
 #include "sim/bodies.h"
 #include "sim/broad.h"
 #include "sim/contacts.h"
+#include "sim/fluid.h"
 #include "sim/lists.h"
 #include "sim/measure.h"
 #include "sim/motion.h"
@@ -55,7 +56,8 @@ static void set_features(dem_world *w, const dem_body_def *defs, size_t count)
     f->ledger = w->ledger && (w->laws.damped || f->jkr || f->friction || features_turning(*f) || w->walls.move);
     f->periodic = w->periodic;
     f->moving = w->walls.move;
-    f->weighted = w->multiple != DEM_MULTIPLE_SUM;
+    f->weighted = w->multiple == DEM_MULTIPLE_MEAN || w->multiple == DEM_MULTIPLE_MERGE;
+    f->soft = w->multiple == DEM_MULTIPLE_SOFT;
     for (size_t i = 0; i < count; i++) {
         f->offset |= !w->templates.items[defs[i].shape].centred;
         f->scaled |= defs[i].scale != 1;
@@ -161,6 +163,7 @@ static dem_status make_state(dem_world *w, const dem_scene *scene, dem_error *er
     w->team = dem_team_create(w->threads);
     if (!w->team)
         return dem_fail_memory(error);
+    DEM_TRY(dem_soft_create(w, scene->soft.tau, error));
     DEM_TRY(set_reach(w, error));
     w->skin = larger(dem_broad_skin(w), 2.2 * w->reach);
     DEM_TRY(dem_search_create(w, error));
@@ -180,6 +183,14 @@ static dem_status make_state(dem_world *w, const dem_scene *scene, dem_error *er
     return DEM_OK;
 }
 
+static dem_status check_fluid(const dem_drag_def *drag, dem_error *error)
+{
+    if (drag->density >= 0 && drag->viscosity >= 0 && isfinite(drag->density + drag->viscosity) &&
+        isfinite(v3_norm2(drag->velocity)))
+        return DEM_OK;
+    return dem_fail(error, DEM_USAGE, "damping.drag: has a number that cannot be; give density and viscosity from 0");
+}
+
 static dem_status check_schemes(const dem_scene *scene, dem_error *error)
 {
     if ((unsigned)scene->integrator.translation < DEM_TRANSLATION_SCHEMES &&
@@ -192,6 +203,7 @@ dem_status dem_world_create(const dem_ctx *ctx, const dem_scene *scene, dem_worl
 {
     *world = NULL;
     DEM_TRY(check_schemes(scene, error));
+    DEM_TRY(check_fluid(&scene->damping.drag, error));
     dem_world *w = *world = aligned_alloc(64, (sizeof *w + 63) / 64 * 64);
     if (!w)
         return dem_fail_memory(error);
@@ -245,6 +257,7 @@ void dem_world_destroy(dem_world *w)
         free(w->candidates[t].pairs);
         free(w->candidates[t].work);
     }
+    dem_soft_release(w);
     dem_team_destroy(w->team);
     dem_views_release(&w->views);
     dem_regions_release(w->regions);
@@ -378,9 +391,15 @@ static void step_part(void *user, int which)
         dem_mesh_touch_measure(w, begin, end);
     if (w->features.weighted)
         dem_weigh_contacts(w, begin, end);
-    wall_pass(w, begin, end, kick);
+    if (w->features.soft)
+        dem_soft_walls(w, begin, end, kick, part);
+    else
+        wall_pass(w, begin, end, kick);
     double t1 = dem_clock();
-    contact_pass(w, begin, end, kick);
+    if (w->features.soft)
+        dem_soft_pairs(w, begin, end, kick, part);
+    else
+        contact_pass(w, begin, end, kick);
     double t2 = dem_clock();
     dem_team_meet(w->team);
     dem_contacts_add_slots(w, begin * DEM_SEGMENT, end * DEM_SEGMENT);
@@ -391,7 +410,11 @@ static void step_part(void *user, int which)
         dem_team_meet(w->team);
     }
     double t3 = dem_clock();
+    if (w->bodies.fluid)
+        dem_fluid_push(w, begin * DEM_SEGMENT, end * DEM_SEGMENT, kick);
     motion_pass(w, begin, end, kick, part);
+    if (w->bodies.fluid && w->ledger)
+        dem_fluid_tally(w, begin * DEM_SEGMENT, end * DEM_SEGMENT);
     double t4 = dem_clock();
     if (part == 0) {
         w->clocks[DEM_PASS_WALLS].seconds += t1 - t0;

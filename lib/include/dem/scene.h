@@ -221,11 +221,21 @@ typedef enum dem_local_frame {
     DEM_LOCAL_VECTOR,  ///< force and moment as vectors against the velocity
 } dem_local_frame;
 
+/// A fluid that flows evenly and drags each body as the sphere of its volume (Schiller & Naumann 1933). Density and
+/// viscosity 0: there is none.
+typedef struct dem_drag_def {
+    double density;     ///< [kg/m^3]
+    double viscosity;   ///< dynamic [Pa s]
+    dem_vec3 velocity;  ///< [m/s]
+    bool buoyancy;      ///< bodies weigh less by the fluid they displace
+} dem_drag_def;
+
 typedef struct dem_damping_def {
     double local;  ///< Cundall's alpha, 0..1 [-]
     dem_local_frame local_frame;
     bool exclude_gravity;  ///< local damping acts on the contact forces only
     double viscous;        ///< F = -c m v, T = -c L [1/s]
+    dem_drag_def drag;
 } dem_damping_def;
 
 /// How positions follow from forces, one evaluation of the forces a step (PHYSICS 2.1).
@@ -256,7 +266,16 @@ typedef struct dem_integrator_def {
 } dem_integrator_def;
 
 /// How several contacts of one pair of bodies add up.
-typedef enum dem_multiple { DEM_MULTIPLE_SUM, DEM_MULTIPLE_MEAN, DEM_MULTIPLE_MERGE } dem_multiple;
+typedef enum dem_multiple {
+    DEM_MULTIPLE_SUM,
+    DEM_MULTIPLE_MEAN,
+    DEM_MULTIPLE_MERGE,
+    DEM_MULTIPLE_SOFT,  ///< one contact by a soft maximum of the overlaps, whatever the number of spheres
+} dem_multiple;
+
+typedef struct dem_soft_def {
+    double tau;  ///< length of the soft maximum, .2 to .3 of the typical largest overlap [m]; 0: by likely impacts
+} dem_soft_def;
 
 typedef struct dem_time_def {
     double end;            ///< [s]; NAN: not given
@@ -310,6 +329,7 @@ typedef struct dem_scene {
     dem_damping_def damping;
     dem_integrator_def integrator;
     dem_multiple multiple;
+    dem_soft_def soft;
     const dem_measure_def *measures;
     size_t measure_count;
     dem_output_def output;
