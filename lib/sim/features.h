@@ -31,7 +31,8 @@
     X(weighted, "several contacts of one pair share its force")                                                        \
     X(ledger, "energy that contacts dissipate is summed")                                                              \
     X(watch, "contacts tell how near an automatic step is to its limit")                                               \
-    X(moving, "walls that move")
+    X(moving, "walls that move")                                                                                       \
+    X(reaction, "forces on walls are kept, for those that follow them")
 
 typedef struct dem_features {
 #define FIELD(name, about) bool name;
