@@ -1,6 +1,7 @@
 // Adhesion of soft spheres: against the landmarks of Johnson, Kendall & Roberts, the curve between them, the work of a
 // cycle, and what becomes of spheres that meet.
 #include "bench_contact.h"
+#include "same_bits.h"
 
 static const double W = 0.05, R = 1e-4, MODULUS = 1e7;  // w [J/m^2], R* [m], E* [Pa]
 
@@ -193,49 +194,33 @@ static void a_sphere_hangs_from_a_ceiling_of_any_kind(void **state)
     }
 }
 
-// the bits of a gas that sticks together do not depend on instruction sets, threads or a restart
+static model *sticky_gas(void)
+{
+    model *m = soft_model(2500);
+    m->laws[0].damping = DEM_DAMPING_RESTITUTION;
+    m->laws[0].restitution = 0.5;
+    m->laws[0].friction = DEM_FRICTION_MINDLIN;
+    m->laws[0].friction_coefficient = 0.3;
+    m->laws[0].rolling = DEM_ROLLING_EPSD;
+    m->laws[0].rolling_coefficient = 0.1;
+    m->laws[0].twisting = DEM_TWISTING_MARSHALL;
+    m->scene.time.step = 4e-6;
+    model_sphere(m, 2 * R);
+    model_dumbbell(m, 1.5 * R, 2 * R);
+    model_lattice(m, 600, 4.8 * R, 0.1, 1);
+    return m;
+}
+
+static void it_sticks(dem_world *w)
+{
+    check(dem_world_figures(w)->contacts > 100);
+    check(fabs(dem_world_figures(w)->energy.error) < 0.1);  // ten steps a contact; and it is a number
+}
+
 static void clusters_are_the_same_bits_everywhere(void **state)
 {
     (void)state;
-    uint64_t want = 0;
-    for (int i = 0; i < 5; i++) {
-        model *m = soft_model(2500);
-        m->laws[0].damping = DEM_DAMPING_RESTITUTION;
-        m->laws[0].restitution = 0.5;
-        m->laws[0].friction = DEM_FRICTION_MINDLIN;
-        m->laws[0].friction_coefficient = 0.3;
-        m->laws[0].rolling = DEM_ROLLING_EPSD;
-        m->laws[0].rolling_coefficient = 0.1;
-        m->laws[0].twisting = DEM_TWISTING_MARSHALL;
-        m->scene.time.step = 4e-6;
-        model_sphere(m, 2 * R);
-        model_dumbbell(m, 1.5 * R, 2 * R);
-        model_lattice(m, 600, 4.8 * R, 0.1, 1);
-        dem_kernels const *kernels = dem_kernels_choose(i == 1 ? "plain" : i == 2 ? "v3" : NULL);
-        dem_world *w = model_world(m, i == 3 ? 2 : 1);
-        if (kernels) {
-            w->kernels = kernels;
-            w->instance = w->wall_instance = &kernels->instances[kernels->instance_count - 1];
-        }
-        run_steps(w, 500);
-        if (i == 4) {
-            void *bytes;
-            size_t size;
-            dem_error error;
-            check_ok(dem_world_save(w, &bytes, &size, &error), error);
-            dem_world_destroy(w);
-            w = model_world(m, 1);
-            check_ok(dem_world_restore(w, bytes, size, &error), error);
-            free(bytes);
-        }
-        run_steps(w, 500);
-        check(measured(w)->contacts > 100);
-        check(fabs(dem_world_figures(w)->energy.error) < 0.1);  // ten steps a contact; and it is a number
-        want = want ? want : dem_world_hash(w);
-        assert_int_equal(dem_world_hash(w), want);
-        dem_world_destroy(w);
-        model_free(m);
-    }
+    check_same_bits(sticky_gas, 500, it_sticks);
 }
 
 int main(void)

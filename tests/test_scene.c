@@ -48,7 +48,8 @@ static void the_plain_sections_are_read(void **state)
         "'time': {'end': '500 ms', 'step': '1 us', 'safety': 0.5, 'contact_steps': 20},\n"
         "'domain': {'min': [0, '-1 cm', null], 'max': [1, 2, null], 'periodic': [true, false, false],\n"
         " 'leaving': 'ignore'}, 'inlets': {}, 'bonds': [],\n"
-        "'damping': {'local': 0.7, 'local_frame': 'vector', 'exclude_gravity': true, 'viscous': '3 1/s'},\n"
+        "'damping': {'local': 0.7, 'local_frame': 'vector', 'exclude_gravity': true, 'viscous': '3 1/s',\n"
+        " 'drag': {'density': '1 g/cm3', 'viscosity': '2 mPa s', 'velocity': [0, '5 cm/s', 0], 'buoyancy': true}},\n"
         "'integrator': {'translation': 'taylor', 'rotation': 'no-squish'}, 'contacts_between_clumps': 'merge',\n"
         "'output': {'directory': 'here', 'frames': '5 ms', 'series': 1e-3, 'checkpoint': '2 min', 'energy': false}}");
     assert_string_equal(s.title, "sand");
@@ -59,8 +60,13 @@ static void the_plain_sections_are_read(void **state)
     check(s.domain.periodic[0] && !s.domain.periodic[1] && s.domain.leaving == DEM_LEAVING_IGNORE);
     check(s.damping.local == 0.7 && s.damping.local_frame == DEM_LOCAL_VECTOR && s.damping.exclude_gravity);
     check(s.damping.viscous == 3 && s.multiple == DEM_MULTIPLE_MERGE);
+    check(s.damping.drag.density == 1000 && s.damping.drag.viscosity == 2e-3 && s.damping.drag.buoyancy);
+    check_vec(s.damping.drag.velocity, v3(0, 0.05, 0), 1e-17);
     check(s.integrator.translation == DEM_TRANSLATION_TAYLOR && s.integrator.rotation == DEM_ROTATION_NO_SQUISH);
     assert_string_equal(s.output.directory, "here");
+    dem_scene soft = scene_of("{'schema': 'dem-scene/1', 'contacts_between_clumps': 'soft', 'soft': {'tau': '3 um'}}");
+    check(soft.multiple == DEM_MULTIPLE_SOFT && soft.soft.tau == 3e-6 && s.soft.tau == 0);
+    dem_scene_release(&soft);
     check(s.output.frames == 5e-3 && s.output.series == 1e-3 && s.output.checkpoint == 120 && !s.output.energy);
     check(!s.output.checkpoint_wall);
     dem_scene_release(&s);
@@ -77,12 +83,14 @@ static void every_key_of_a_law_is_read(void **state)
         " 'b': {'young': 1e9, 'poisson': 0.5}, 'c': {}}, 'contacts': [\n"
         "{'between': ['a', 'b'], 'effective_mass': 'body', 'normal': {'law': 'linear', 'stiffness_from': 'young',\n"
         " 'restitution': 0.5, 'restitution_mode': 'tension_allowed'},\n"
-        " 'friction': {'law': 'linear', 'stiffness': '1 kN/m', 'coefficient': 0.4, 'damping_rate': 7}},\n"
+        " 'friction': {'law': 'linear', 'stiffness': '1 kN/m', 'coefficient': 0.4, 'static_coefficient': 0.5, 'decay':\n"
+        " '3 s/mm', 'damping_rate': 7}},\n"
         "{'between': ['a', 'a'], 'effective_mass': 'local', 'normal': {'law': 'hertz', 'damping_rate': '5 Hz',\n"
         " 'restitution_mode': 'cut_corrected'},\n"
         " 'friction': {'law': 'mindlin', 'coefficient': 0, 'rescale': false}},\n"
         "{'between': ['b', 'b'], 'normal': {'stiffness': '1 MN/m', 'restitution': 1},\n"
-        " 'friction': {'coefficient': 1, 'stiffness_ratio': 0.5}},\n"
+        " 'friction': {'coefficient': 1, 'stiffness_ratio': 0.5}, 'cohesion': {'law': 'breakable', 'tension': '2 kN',\n"
+        " 'shear': 5, 'gap': '1 mm'}},\n"
         "{'between': ['c', 'c'], 'normal': {'stiffness': 1}, 'friction': null, 'rolling': null},\n"
         "{'between': ['a', 'c'], 'normal': {'stiffness': 1}, 'friction': {'coefficient': 1},\n"
         " 'rolling': {'law': 'epsd', 'coefficient': 0.1, 'stiffness': 3, 'damping': 0.2},\n"
@@ -98,10 +106,13 @@ static void every_key_of_a_law_is_read(void **state)
     check(l[0].normal == DEM_NORMAL_LINEAR && l[0].stiffness == 0 && l[0].damping == DEM_DAMPING_RESTITUTION);
     check(l[0].restitution == 0.5 && l[0].tail == DEM_TAIL_TENSION && l[0].friction == DEM_FRICTION_LINEAR);
     check(l[0].tangential_stiffness == 1000 && l[0].friction_coefficient == 0.4 && l[0].tangential_rate == 7);
+    check(l[0].static_coefficient == 0.5 && l[0].friction_decay == 3000 && isnan(l[1].static_coefficient));
     check(l[1].normal == DEM_NORMAL_HERTZ && l[1].damping == DEM_DAMPING_RATE && l[1].damping_rate == 5);
     check(l[1].tail == DEM_TAIL_CUT && l[1].friction == DEM_FRICTION_MINDLIN && !l[1].rescale);
     check(l[2].stiffness == 1e6 && l[2].damping == DEM_DAMPING_RESTITUTION && l[2].restitution == 1);
     check(l[2].friction == DEM_FRICTION_LINEAR && l[2].stiffness_ratio == 0.5 && isnan(l[2].tangential_stiffness));
+    check(l[2].cohesion == DEM_COHESION_BREAKABLE && l[2].bond_tension == 2000 && l[2].bond_shear == 5);
+    check(l[2].bonded == DEM_BONDED_AT_START && l[2].bond_gap == 1e-3);
     check(l[3].friction == DEM_FRICTION_NONE && l[3].damping == DEM_DAMPING_NONE);
     check(l[3].rolling == DEM_ROLLING_NONE && l[3].twisting == DEM_TWISTING_NONE);
     check(l[4].rolling == DEM_ROLLING_EPSD && l[4].rolling_coefficient == 0.1 && l[4].rolling_stiffness == 3);

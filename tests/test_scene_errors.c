@@ -182,7 +182,11 @@ static void wrong_laws_are_refused(void **state)
         {LAW("'stiffness': 1", ", 'friction': {'coefficient': 1, 'law': 'mindlin'}"), 4,
          "~the law mindlin needs the normal law hertz"},
         {LAW("'stiffness': 1", ", 'friction': {'coefficient': 1, 'rescale': true}"), 4, "~has no 'rescale'"},
-        {LAW("'stiffness': 1", ", 'friction': {'coefficient': 1, 'static_coefficient': 1}"), 4, "~is not built yet"},
+        {LAW("'stiffness': 1", ", 'friction': {'coefficient': 1, 'static_coefficient': 0.9}"), 4,
+         "~has a 'static_coefficient' below 'coefficient'"},
+        {LAW("'stiffness': 1", ", 'friction': {'coefficient': 1, 'decay': 9}"), 4, "~without 'static_coefficient'"},
+        {LAW("'stiffness': 1", ", 'friction': {'coefficient': 1, 'static_coefficient': 2, 'decay': '1 m/s'}"), 4,
+         "~use one of: s/m s/mm"},
         {LAW("'stiffness': 1", ", 'friction': {'coefficient': 1, 'stiffness': 1, 'stiffness_ratio': 1}"), 4,
          "~has both 'stiffness' and 'stiffness_ratio'"},
         {LAW("'stiffness': 1", ", 'rolling': {}"), 4, "contacts[0].rolling: 'law' is missing (column 40); add it"},
@@ -194,8 +198,20 @@ static void wrong_laws_are_refused(void **state)
         {LAW("'stiffness': 1", ", 'twisting': {'law': 'constant'}"), 4, "~the law constant needs 'coefficient'"},
         {LAW("'stiffness': 1", ", 'twisting': {'law': 'marshall', 'coefficient': 1}"), 4,
          "~takes the coefficient of the friction"},
-        {LAW("'stiffness': 1", ", 'cohesion': {'law': 'sjkr'}"), 4, "~'energy_density' is missing"},
-        {LAW("'stiffness': 1", ", 'cohesion': {'law': 'breakable'}"), 4, "~is not built yet"},
+        {LAW("'stiffness': 1", ", 'cohesion': {'law': 'sjkr'}"), 4, "~the law sjkr needs 'energy_density'"},
+        {LAW("'stiffness': 1", ", 'cohesion': {'law': 'breakable'}"), 4, "~the law breakable needs 'tension'"},
+        {LAW("'stiffness': 1", ", 'cohesion': {'law': 'breakable', 'tension': '1 kN', 'shear': '2 m'}"), 4,
+         "~is not a unit of force"},
+        {LAW("'stiffness': 1", ", 'cohesion': {'law': 'breakable', 'tension': '1 kN', 'shear': 2}"), 4,
+         "~holds the surfaces by the spring of the friction"},
+        {LAW("'stiffness': 1", ", 'cohesion': {'law': 'sjkr', 'energy_density': 1, 'shear': 1}"), 4,
+         "~only the law breakable has 'shear'"},
+        {LAW("'stiffness': 1", ", 'friction': {'coefficient': 0}, 'cohesion': {'law': 'breakable', 'tension': 1,\n"
+                               "'shear': 1, 'bonded': 'at_touch', 'gap': 1}"),
+         4, "~have no 'gap'"},
+        {S "'materials': {'c': {'young': 1, 'poisson': 0}}, 'contacts': [{'between': ['c', 'c'], 'normal': {'law':\n"
+           "'hertz'}, 'friction': {'coefficient': 1}, 'cohesion': {'law': 'breakable', 'tension': 1, 'shear': 1}}]}",
+         3, "~the law breakable needs the normal law linear"},
         {LAW("'stiffness': 1", ", 'effective_mass': 'x'"), 4, "~use one of: local, body"},
         {S "'materials': {'c': {'young': 1, 'poisson': 0}}, 'contacts': [{'between': ['c', 'c'], 'normal': {'law':\n"
            "'hertz'}, 'friction': {'coefficient': 1, 'stiffness_ratio': 1}}]}",
@@ -232,6 +248,26 @@ static void materials_that_can_meet_need_a_law(void **state)
     dem_scene s = scene_of(TWO "'contacts': [" LAW_OF("a", "a") ", " LAW_OF("c", "a") "],\n'shapes': {'s': " BALL(
         "a") "}, " FLOOR("c") "}");
     dem_scene_release(&s);
+}
+
+static void soft_contacts_refuse_what_they_do_not_have(void **state)
+{
+    (void)state;
+#define SOFT_WITH(law)                                                                                                 \
+    S "'materials': {'a': {'density': 1, 'young': 1e9, 'poisson': 0.2}},\n'contacts': [{'between': ['a', 'a'], " law     \
+      "}],\n'contacts_between_clumps': 'soft'}"
+    static const refusal cases[] = {
+        {SOFT_WITH("'normal': {'stiffness': 1}, 'rolling': {'law': 'bounded', 'coefficient': 0.1}"), 4,
+         "contacts_between_clumps: is 'soft', which does not go with the rolling resistance of contacts 0 (column 28); "
+         "take 'sum', or leave that out"},
+        {SOFT_WITH("'normal': {'law': 'jkr', 'work_of_adhesion': 1}"), 4, "~does not go with the adhesion"},
+        {SOFT_WITH("'normal': {'stiffness': 1}, 'cohesion': {'law': 'sjkr', 'energy_density': 1}"), 4, "~the cohesion"},
+        {S "'soft': {'tau': 1e-6}}", 2,
+         "soft: is of contacts_between_clumps 'soft', which is not set (column 9); set it, or leave this out"},
+        {S "'contacts_between_clumps': 'soft', 'soft': {'tau': 0}}", 2, "~must be above 0"},
+        {S "'contacts_between_clumps': 'soft', 'soft': {'tau': 'big'}}", 2, "~tau"},
+    };
+    CHECK_REFUSALS(cases);
 }
 
 static void wrong_shapes_are_refused(void **state)
@@ -370,11 +406,12 @@ static void what_is_not_built_is_never_ignored(void **state)
         {S "'inlets': [1]}", 2, "~is not built yet"},
         {S "'bonds': {'a': {}}}", 2, "~is not built yet"},
         {S "'bonds': 5}", 2, "~is not built yet"},
-        {S "'damping': {'drag': {}}}", 2, "~is not built yet"},
+        {S "'damping': {'drag': {}}}", 2, "~'density' is missing"},
+        {S "'damping': {'drag': {'density': 1, 'viscosity': -1}}}", 2, "~must be at least 0"},
+        {S "'damping': {'drag': {'density': 1, 'viscosity': '1 Pa'}}}", 2, "~viscosity"},
         {S "'dimension': 4}", 2, "dimension: must be at least 2 and at most 3, not 4 (column 14); correct it"},
         {S "'dimension': '2D'}", 2, "~needs a whole number"},
         {S "'integrator': {'rotation': 'lsim'}}", 2, "unknown rotation 'lsim' (column 28); did you mean 'lsym'?"},
-        {S "'contacts_between_clumps': 'soft'}", 2, "~is not built yet"},
     };
     CHECK_REFUSALS(cases);
 }
@@ -402,6 +439,7 @@ int main(void)
         cmocka_unit_test(numbers_out_of_range_are_refused),
         cmocka_unit_test(wrong_laws_are_refused),
         cmocka_unit_test(materials_that_can_meet_need_a_law),
+        cmocka_unit_test(soft_contacts_refuse_what_they_do_not_have),
         cmocka_unit_test(wrong_shapes_are_refused),
         cmocka_unit_test(wrong_bodies_are_refused),
         cmocka_unit_test(wrong_walls_are_refused),

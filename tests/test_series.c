@@ -51,8 +51,8 @@ static void columns_are_named_with_their_units(void **state)
     dem_series_close(opened(in_folder("names"), VIEW_WALLS, NAN));
     dem_buffer text = content(in_folder("names/series.csv"));
     assert_string_equal(text.data,
-                        "time_s,step,kinetic_J,rotational_J,potential_J,elastic_J,friction_J,viscous_J,local_J,drag_J,"
-                        "work_J,energy_error,contacts,wall_contacts,coordination,overlap_ratio,centre_x_m,centre_y_m,"
+                        "time_s,step,kinetic_J,rotational_J,potential_J,elastic_J,friction_J,viscous_J,broken_J,"
+                        "local_J,drag_J,work_J,energy_error,contacts,wall_contacts,coordination,overlap_ratio,centre_x_m,centre_y_m,"
                         "centre_z_m,highest_m,floor_fx_N,floor_fy_N,floor_fz_N,floor_mx_Nm,floor_my_Nm,floor_mz_Nm,"
                         "drum_fx_N,drum_fy_N,drum_fz_N,drum_mx_Nm,drum_my_Nm,drum_mz_Nm,lid__moving_fx_N,"
                         "lid__moving_fy_N,lid__moving_fz_N,lid__moving_mx_Nm,lid__moving_my_Nm,lid__moving_mz_Nm\n");
@@ -72,14 +72,14 @@ static void a_row_is_in_the_file_at_once_and_in_no_locale(void **state)
                      .overlap_ratio = 0.1 + 0.2,
                      .centre = {1, -2, 1e-20},
                      .highest = INFINITY,
-                     .energy = {0.5, 0.25, -1, 2, 3, 4, 5, 6, 7, 8, -NAN}};
+                     .energy = {0.5, 0.25, -1, 2, 3, 4, 4.5, 5, 6, 7, 8, -NAN}};
     const dem_wall_view wall = {.force = {1, 2, 3}, .moment = {-0.25, 0, 6}};
     dem_error error;
     check_ok(dem_series_write(series, &f, &wall, NULL, &error), error);
     setlocale(LC_ALL, "C");
     dem_buffer text = content(in_folder("row/series.csv"));
     assert_string_equal(strchr(text.data, '\n') + 1,
-                        "0.001,18446744073709551615,0.5,0.25,-1,2,3,4,5,6,7,nan,12,3,4.5,0.30000000000000004,1,-2,"
+                        "0.001,18446744073709551615,0.5,0.25,-1,2,3,4,4.5,5,6,7,nan,12,3,4.5,0.30000000000000004,1,-2,"
                         "1e-20,inf,1,2,3,-0.25,0,6\n");
     check(dem_series_rows(series) == 1);
     dem_buffer_release(&text);

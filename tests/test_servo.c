@@ -8,8 +8,7 @@ enum { GRAINS = 216 };
 
 static dem_servo_def servo(dem_vec3 direction, double force, double fastest)
 {
-    return (dem_servo_def){
-        .on = true, .direction = direction, .target = force, .gain = 0.5, .max_velocity = fastest};
+    return (dem_servo_def){.on = true, .direction = direction, .target = force, .gain = 0.5, .max_velocity = fastest};
 }
 
 static void damp(model *m)
@@ -102,8 +101,8 @@ static void add_side(model *m, int axis, double at, double side, double stress, 
         return;
     dem_vec3 u = v3_scale(v3_normal_to(normal), 3 * at), v = v3_cross(normal, u), c = wall->point;
     wall->kind = DEM_WALL_MESH;
-    wall->mesh = wall_quad(v3_sub(v3_sub(c, u), v), v3_sub(v3_add(c, u), v), v3_add(v3_add(c, u), v),
-                           v3_add(v3_sub(c, u), v));
+    wall->mesh =
+        wall_quad(v3_sub(v3_sub(c, u), v), v3_sub(v3_add(c, u), v), v3_add(v3_add(c, u), v), v3_add(v3_sub(c, u), v));
     wall->servo.extent[0] = wall->servo.extent[1] = (dem_servo_extent){2 * at, {0, 0}};
 }
 
@@ -120,8 +119,8 @@ static model *box_of_grains(size_t count, bool mesh)
     dem_random random = random_stream(5, 5);
     uint32_t large = model_sphere(m, r), small = model_sphere(m, 0.8 * r);
     for (int i = 0; i < (int)count; i++) {
-        dem_vec3 x = v3(i % side - (side - 1) / 2.0, i / side % side - (side - 1) / 2.0,
-                        i / side / side - (side - 1) / 2.0);
+        dem_vec3 x =
+            v3(i % side - (side - 1) / 2.0, i / side % side - (side - 1) / 2.0, i / side / side - (side - 1) / 2.0);
         dem_vec3 jitter = random_in(&random, v3(-0.1, -0.1, -0.1), v3(0.1, 0.1, 0.1));
         model_body(m, i % 2 ? large : small, v3_scale(v3_add(x, jitter), cell));
     }

@@ -65,7 +65,8 @@ static void a_wall_is_as_fast_as_it_moves(void **state)
             if (!near_a_kink(t, which))
                 check_vec(velocity_at(&m, t, x), v, 1e-7);
             dem_wall_moment now = dem_wall_motion_at(&m, t);
-            check(v3_norm(now.velocity) <= m.speed_most * (1 + 1e-12) && v3_norm(now.spin) <= m.rate_most * (1 + 1e-12));
+            check(v3_norm(now.velocity) <= m.speed_most * (1 + 1e-12) &&
+                  v3_norm(now.spin) <= m.rate_most * (1 + 1e-12));
         }
         check_vec(point_at(&m, 0, v3(1, 2, 3)), v3(1, 2, 3), 1e-15);
     }
@@ -176,12 +177,12 @@ static void a_shaken_run_goes_on_bit_for_bit(void **state)
 static void motions_are_read(void **state)
 {
     (void)state;
-    dem_scene s = scene_of(HEAD
-                           "'walls': {'a': {" PLATE "{'oscillate': {'direction': [0, 0, 2], 'amplitude': '2 mm',"
-                           "'frequency': '50 Hz', 'phase': '90 deg'}, 'start': '1 s', 'stop': '2 s'}},"
-                           "'b': {" PLATE "{'rotate': {'axis': [0, 1, 0], 'through': [1, 2, 3], 'rate': 2},"
-                           "'oscillate': [{'amplitude': [1, 2, 3], 'frequency': 2}, {'angle': '180 deg', 'frequency': 3,"
-                           "'axis': [0, 5, 0]}]}}}}");
+    dem_scene s =
+        scene_of(HEAD "'walls': {'a': {" PLATE "{'oscillate': {'direction': [0, 0, 2], 'amplitude': '2 mm',"
+                      "'frequency': '50 Hz', 'phase': '90 deg'}, 'start': '1 s', 'stop': '2 s'}},"
+                      "'b': {" PLATE "{'rotate': {'axis': [0, 1, 0], 'through': [1, 2, 3], 'rate': 2},"
+                      "'oscillate': [{'amplitude': [1, 2, 3], 'frequency': 2}, {'angle': '180 deg', 'frequency': 3,"
+                      "'axis': [0, 5, 0]}]}}}}");
     const dem_wall_def *a = &s.walls[0], *b = &s.walls[1];
     check(a->oscillation_count == 1 && a->oscillations[0].shift.z == 0.002 && a->oscillations[0].frequency == 50);
     check(a->start == 1 && a->stop == 2);

@@ -5,9 +5,9 @@
 #include <stdarg.h>
 #include <stdlib.h>
 #include <string.h>
-#include <time.h>
 #include <unistd.h>
 
+#include "base/clock.h"
 #include "base/file.h"
 #include "base/memory.h"
 
@@ -81,13 +81,6 @@ int cli_print(const cli_tool *tool, dem_buffer *text)
     return dem_file_write_buffer("-", text, &error) == DEM_OK ? DEM_OK : cli_error(tool, &error);
 }
 
-static double now(void)
-{
-    struct timespec t;
-    clock_gettime(CLOCK_MONOTONIC, &t);
-    return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
-}
-
 static void ask_to_stop(int signal_number)
 {
     (void)signal_number;
@@ -102,7 +95,7 @@ bool cli_interrupted(void)
 void cli_begin(cli_session *session, const cli_tool *tool, const cli_common *common)
 {
     *session = (cli_session){.tool = tool, .common = common, .terminal = isatty(STDERR_FILENO)};
-    session->phase_begin = session->last_shown = now();
+    session->phase_begin = session->last_shown = dem_clock();
     pthread_mutex_init(&session->lock, NULL);
     struct sigaction action = {.sa_handler = ask_to_stop, .sa_flags = (int)SA_RESETHAND};
     sigemptyset(&action.sa_mask);
@@ -154,7 +147,7 @@ static void log_line(void *user, dem_log_level level, const char *subject, const
 
 static void draw(cli_session *session, const char *what, double fraction)
 {
-    double time = now(), spent = time - session->phase_begin;
+    double time = dem_clock(), spent = time - session->phase_begin;
     bool early = time - session->last_shown < (session->terminal ? REDRAW : LINE_EVERY);
     if (session->common->quiet || early || (session->terminal && spent < FIRST_DRAW))
         return;
@@ -178,7 +171,7 @@ static bool on_progress(void *user, const char *what, double fraction)
     size_t name = strcspn(what, ",");
     name = name < sizeof session->phase - 1 ? name : sizeof session->phase - 1;
     if (fraction < session->last_fraction || strncmp(session->phase, what, name) != 0)
-        session->phase_begin = now();
+        session->phase_begin = dem_clock();
     snprintf(session->phase, sizeof session->phase, "%s", what);
     session->last_fraction = fraction;
     draw(session, what, fmin(fmax(fraction, 0), 1));

@@ -5,9 +5,9 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <time.h>
 #include <unistd.h>
 
+#include "base/clock.h"
 #include "base/file.h"
 #include "mesh/guard.h"
 #include "out/export_text.h"
@@ -21,13 +21,6 @@ enum {
 static const double MEMORY = 4e9;        // beyond what we have [byte]
 static const double LARGEST_FILE = 1e9;  // [byte]
 static const double MOST_OUTPUT = 1e8;   // printed [byte]
-
-static double now(void)
-{
-    struct timespec t;
-    clock_gettime(CLOCK_MONOTONIC, &t);
-    return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
-}
 
 bool engine_find(const engine *e, char path[256])
 {
@@ -176,13 +169,13 @@ dem_status engine_run(const engine_question *question, const engine *e, engine_a
     if (asprintf(&temporary, "TMPDIR=%s", question->folder) < 0)
         return dem_fail_memory(error);
     set_variables(&c, temporary);
-    double begin = now();
+    double begin = dem_clock();
     dem_guard guard;
     dem_guard_limits limits = {.memory = MEMORY, .cpu = question->wall, .wall = question->wall, .file = LARGEST_FILE};
     dem_status status = dem_guard_start(&guard, question->ctx, limits, become, &c, error);
     if (status == DEM_OK)
         status = follow(&guard, e, answer, printed, error);
-    answer->seconds += now() - begin;
+    answer->seconds += dem_clock() - begin;
     free(temporary);
     return status;
 }

@@ -4,9 +4,9 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <time.h>
 #include <unistd.h>
 
+#include "base/clock.h"
 #include "base/file.h"
 #include "base/hash.h"
 #include "base/memory.h"
@@ -32,13 +32,6 @@ typedef struct job {
     dem_mesh_report report;
     double started, seconds_read, seconds_repair;
 } job;
-
-static double now(void)
-{
-    struct timespec t;
-    clock_gettime(CLOCK_MONOTONIC, &t);
-    return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
-}
 
 static void keep_text(char ***texts, size_t *count, size_t *capacity, const char *text)
 {
@@ -90,9 +83,9 @@ static dem_status read_and_repair(job *j, dem_mesh *mesh, dem_error *error)
             DEM_TRY(dem_sha256_file(j->input, j->sha256, error));
         dem_mesh_scale(mesh, o->unit);
     }
-    j->seconds_read = now() - j->started;
+    j->seconds_read = dem_clock() - j->started;
     DEM_TRY(dem_mesh_repair(&j->ctx, mesh, &o->repair, &j->report, error));
-    j->seconds_repair = now() - j->started - j->seconds_read;
+    j->seconds_repair = dem_clock() - j->started - j->seconds_read;
     return DEM_OK;
 }
 
@@ -214,7 +207,7 @@ static void run_body(job *j, dem_mesh *mesh, const char *name, size_t body, size
     r->status = finish_body(j, r, mesh, body, bodies, &r->error);
     if (r->status != DEM_OK && !r->error.file[0])
         snprintf(r->error.file, sizeof r->error.file, "%s", j->ctx.subject);
-    r->seconds_total = now() - j->started;
+    r->seconds_total = dem_clock() - j->started;
     size_t capacity = 0;
     for (size_t i = 0; i < j->warning_count; i++)
         keep_text(&r->warnings, &r->warning_count, &capacity, j->warnings[i]);
@@ -249,7 +242,7 @@ static void run_bodies(job *j, dem_mesh *mesh, const char *name)
 
 static void open_job(job *j)
 {
-    j->started = now();
+    j->started = dem_clock();
     j->ctx = (dem_ctx){.log = job_log, .progress = job_progress, .user = j, .subject = j->caller->subject,
                        .threads = j->caller->threads};
 }
@@ -298,7 +291,7 @@ static void run(job *j, const char *name)
             r->error = error;
             if (!error.file[0])
                 snprintf(r->error.file, sizeof r->error.file, "%s", j->ctx.subject);
-            r->seconds_total = now() - j->started;
+            r->seconds_total = dem_clock() - j->started;
             r->warnings = j->warnings;
             r->warning_count = j->warning_count;
             j->warnings = NULL;

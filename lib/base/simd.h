@@ -71,6 +71,10 @@ DEM_INLINE wide_mask wide_less(wide a, wide b)
 {
     return _mm512_cmp_pd_mask(a, b, _CMP_LT_OQ);
 }
+DEM_INLINE wide_mask wide_less_equal(wide a, wide b)
+{
+    return _mm512_cmp_pd_mask(a, b, _CMP_LE_OQ);
+}
 DEM_INLINE wide_mask wide_not_le(wide a, wide b)
 {
     return _mm512_cmp_pd_mask(a, b, _CMP_NLE_UQ);
@@ -90,6 +94,11 @@ DEM_INLINE wide_mask wide_and(wide_mask a, wide_mask b)
 DEM_INLINE wide_mask wide_either(wide_mask a, wide_mask b)
 {
     return a | b;
+}
+// the last 12 bits of each number to its front
+DEM_INLINE wide wide_bits_up(wide a)
+{
+    return _mm512_castsi512_pd(_mm512_slli_epi64(_mm512_castpd_si512(a), 52));
 }
 DEM_INLINE unsigned wide_bits(wide_mask m)
 {
@@ -271,6 +280,10 @@ DEM_INLINE wide_mask wide_less(wide a, wide b)
 {
     return _mm256_cmp_pd(a, b, _CMP_LT_OQ);
 }
+DEM_INLINE wide_mask wide_less_equal(wide a, wide b)
+{
+    return _mm256_cmp_pd(a, b, _CMP_LE_OQ);
+}
 DEM_INLINE wide_mask wide_not_le(wide a, wide b)
 {
     return _mm256_cmp_pd(a, b, _CMP_NLE_UQ);
@@ -290,6 +303,10 @@ DEM_INLINE wide_mask wide_and(wide_mask a, wide_mask b)
 DEM_INLINE wide_mask wide_either(wide_mask a, wide_mask b)
 {
     return _mm256_or_pd(a, b);
+}
+DEM_INLINE wide wide_bits_up(wide a)
+{
+    return _mm256_castsi256_pd(_mm256_slli_epi64(_mm256_castpd_si256(a), 52));
 }
 DEM_INLINE unsigned wide_bits(wide_mask m)
 {
@@ -446,6 +463,10 @@ DEM_INLINE wide_mask wide_less(wide a, wide b)
 {
     return a < b;
 }
+DEM_INLINE wide_mask wide_less_equal(wide a, wide b)
+{
+    return a <= b;
+}
 DEM_INLINE wide_mask wide_not_le(wide a, wide b)
 {
     return !(a <= b);
@@ -465,6 +486,14 @@ DEM_INLINE wide_mask wide_and(wide_mask a, wide_mask b)
 DEM_INLINE wide_mask wide_either(wide_mask a, wide_mask b)
 {
     return a || b;
+}
+DEM_INLINE wide wide_bits_up(wide a)
+{
+    uint64_t bits;
+    memcpy(&bits, &a, sizeof bits);
+    bits <<= 52;
+    memcpy(&a, &bits, sizeof a);
+    return a;
 }
 DEM_INLINE unsigned wide_bits(wide_mask m)
 {
@@ -547,6 +576,31 @@ DEM_INLINE void indices_pack(uint32_t *p, uint32_t bits, uint32_t first)
 DEM_INLINE wide wide_rsqrt(wide a)
 {
     return wide_all(1) / wide_sqrt(a + wide_all(1e-300));
+}
+
+/// 2^k of whole -1022 <= k <= 1023: the last bits of 1.5 2^52 + x are those of the whole number x.
+DEM_INLINE wide wide_power_of_two(wide k)
+{
+    return wide_bits_up(k + wide_all(0x1.8p52 + 1023));
+}
+
+/// e^x of x <= 0, to a rounding or two: x = k ln 2 + r, and Taylor's series up to r^13 for |r| <= ln 2 / 2. 0 from -708
+/// on.
+DEM_INLINE wide wide_exp(wide x)
+{
+    wide round = wide_all(0x1.8p52), least = wide_all(-708);
+    wide_mask some = wide_less(least, x);
+    x = wide_max(x, least);
+    wide k = wide_fma(x, wide_all(1.4426950408889634), round) - round;
+    // ln 2 in two parts, the first with zeros behind, so that k times it is exact
+    wide r = wide_fnma(k, wide_all(0x1.62e42fefap-1), x), sum = wide_all(1.0 / 6227020800);
+    r = wide_fnma(k, wide_all(0x1.cf79abc9e3b3ap-40), r);
+    static const double one_over_factorial[] = {
+        1.0 / 479001600, 1.0 / 39916800, 1.0 / 3628800, 1.0 / 362880, 1.0 / 40320, 1.0 / 5040, 1.0 / 720,
+        1.0 / 120,       1.0 / 24,       1.0 / 6,       0.5,          1,           1};
+    for (int i = 0; i < 13; i++)
+        sum = wide_fma(sum, r, wide_all(one_over_factorial[i]));
+    return wide_or_zero(some, sum * wide_power_of_two(k));
 }
 
 /// The lanes behind `count`, of DEM_WIDTH_FLOAT, taken out.

@@ -71,10 +71,6 @@ static const unit units[] = {
     {"g", DEM_DIMENSION_MASS, 1e-3},
     {"mg", DEM_DIMENSION_MASS, 1e-6},
     {"t", DEM_DIMENSION_MASS, 1e3},
-    {"N", DEM_DIMENSION_FORCE, 1},
-    {"mN", DEM_DIMENSION_FORCE, 1e-3},
-    {"kN", DEM_DIMENSION_FORCE, 1e3},
-    {"MN", DEM_DIMENSION_FORCE, 1e6},
     {"m2", DEM_DIMENSION_AREA, 1},
     {"m^2", DEM_DIMENSION_AREA, 1},
     {"cm2", DEM_DIMENSION_AREA, 1e-4},
@@ -85,6 +81,18 @@ static const unit units[] = {
     {"kg m^2", DEM_DIMENSION_INERTIA, 1},
     {"1/s", DEM_DIMENSION_RATE, 1},
     {"Hz", DEM_DIMENSION_RATE, 1},
+    {"Pa s", DEM_DIMENSION_VISCOSITY, 1},
+    {"mPa s", DEM_DIMENSION_VISCOSITY, 1e-3},
+    {"cP", DEM_DIMENSION_VISCOSITY, 1e-3},
+    {"N", DEM_DIMENSION_FORCE, 1},
+    {"kN", DEM_DIMENSION_FORCE, 1e3},
+    {"MN", DEM_DIMENSION_FORCE, 1e6},
+    {"mN", DEM_DIMENSION_FORCE, 1e-3},
+    {"uN", DEM_DIMENSION_FORCE, 1e-6},
+    {"µN", DEM_DIMENSION_FORCE, 1e-6},
+    {"nN", DEM_DIMENSION_FORCE, 1e-9},
+    {"s/m", DEM_DIMENSION_SLOWNESS, 1},
+    {"s/mm", DEM_DIMENSION_SLOWNESS, 1e3},
 };
 enum { UNIT_COUNT = sizeof units / sizeof *units };
 
@@ -101,10 +109,12 @@ static const struct {
     [DEM_DIMENSION_ANGLE] = {"an angle", "30 deg"},
     [DEM_DIMENSION_ANGULAR_VELOCITY] = {"an angular velocity", "10 rpm"},
     [DEM_DIMENSION_MASS] = {"a mass", "5 g"},
-    [DEM_DIMENSION_FORCE] = {"a force", "10 N"},
     [DEM_DIMENSION_AREA] = {"an area", "4 cm2"},
     [DEM_DIMENSION_INERTIA] = {"a moment of inertia", "2e-9 kg m2"},
     [DEM_DIMENSION_RATE] = {"a rate", "100 1/s"},
+    [DEM_DIMENSION_VISCOSITY] = {"a viscosity", "1 mPa s"},
+    [DEM_DIMENSION_FORCE] = {"a force", "5 kN"},
+    [DEM_DIMENSION_SLOWNESS] = {"an inverse velocity", "500 s/m"},
     [DEM_DIMENSION_NONE] = {"a number", "0.5"},
 };
 

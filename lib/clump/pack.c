@@ -3,8 +3,8 @@
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
-#include <time.h>
 
+#include "base/clock.h"
 #include "base/status.h"
 #include "clump/pack_target.h"
 
@@ -122,13 +122,6 @@ dem_status dem_pack_complete(dem_pack_options *options, dem_error *error)
     return DEM_OK;
 }
 
-static double seconds_now(void)
-{
-    struct timespec t;
-    clock_gettime(CLOCK_MONOTONIC, &t);
-    return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
-}
-
 dem_status dem_clump_pack(const dem_ctx *ctx, const dem_mesh *mesh, const dem_pack_options *given, dem_pack *pack,
                           dem_error *error)
 {
@@ -136,7 +129,7 @@ dem_status dem_clump_pack(const dem_ctx *ctx, const dem_mesh *mesh, const dem_pa
     dem_pack_options options = *given;
     DEM_TRY(dem_pack_complete(&options, error));
     const dem_packer *packer = dem_packer_find(options.method);
-    double start = seconds_now();
+    double start = dem_clock();
     bool searched = options.gap > 0 || options.target_count > 0;
     dem_status status = searched ? dem_pack_target(ctx, mesh, packer, &options, pack, error)
                                  : packer->run(ctx, mesh, &options, pack, error);
@@ -145,7 +138,7 @@ dem_status dem_clump_pack(const dem_ctx *ctx, const dem_mesh *mesh, const dem_pa
         return status;
     }
     complete_used(packer, &options, pack);
-    pack->seconds = seconds_now() - start;
+    pack->seconds = dem_clock() - start;
     return DEM_OK;
 }
 

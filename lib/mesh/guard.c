@@ -11,17 +11,11 @@
 #include <sys/prctl.h>
 #include <sys/resource.h>
 #include <sys/wait.h>
-#include <time.h>
 #include <unistd.h>
 
-enum { POLL_MS = 50 };
+#include "base/clock.h"
 
-static double now(void)
-{
-    struct timespec t;
-    clock_gettime(CLOCK_MONOTONIC, &t);
-    return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
-}
+enum { POLL_MS = 50 };
 
 static void limit(int what, double soft, double hard)
 {
@@ -89,7 +83,7 @@ _Noreturn static void be_child(int out, const dem_guard_limits *limits, double m
 dem_status dem_guard_start(dem_guard *guard, const dem_ctx *ctx, dem_guard_limits limits,
                            void (*work)(void *user, int out), void *user, dem_error *error)
 {
-    *guard = (dem_guard){.ctx = ctx, .limits = limits, .begin = now(), .doing = "importing", .status = -1};
+    *guard = (dem_guard){.ctx = ctx, .limits = limits, .begin = dem_clock(), .doing = "importing", .status = -1};
     int ends[2];
     if (pipe2(ends, O_CLOEXEC) != 0)
         return dem_fail(error, DEM_FAILED, "no pipe to a child process: %s; close other programs", strerror(errno));
@@ -111,7 +105,7 @@ dem_status dem_guard_start(dem_guard *guard, const dem_ctx *ctx, dem_guard_limit
 size_t dem_guard_read_some(dem_guard *guard, void *bytes, size_t size)
 {
     for (;;) {
-        if (now() - guard->begin > guard->limits.wall) {
+        if (dem_clock() - guard->begin > guard->limits.wall) {
             guard->late = true;
             return 0;
         }
@@ -153,7 +147,7 @@ static int reap(dem_guard *guard)
         pid_t ended = waitpid(guard->child, &status, killed ? 0 : WNOHANG);
         if (ended == guard->child || (ended < 0 && errno != EINTR))
             return status;
-        if (ended == 0 && now() - guard->begin > guard->limits.wall) {
+        if (ended == 0 && dem_clock() - guard->begin > guard->limits.wall) {
             kill(guard->child, SIGKILL);
             killed = guard->late = true;
         } else if (ended == 0) {

@@ -37,6 +37,7 @@ static const struct {
     COLUMN(NUMBER, "elastic_J", energy.elastic),
     COLUMN(NUMBER, "friction_J", energy.friction),
     COLUMN(NUMBER, "viscous_J", energy.viscous),
+    COLUMN(NUMBER, "broken_J", energy.broken),
     COLUMN(NUMBER, "local_J", energy.local),
     COLUMN(NUMBER, "drag_J", energy.drag),
     COLUMN(NUMBER, "work_J", energy.work),

@@ -93,6 +93,8 @@ static void put_inertia(const dem_world *w, size_t row, const dem_template *t, d
     inertia[5] = t->mass * cube;
     inertia[6] = 1 / (t->least_mass * cube);
     inertia[7] = t->isotropic;
+    if (w->damping.drag.buoyancy)
+        inertia[5] -= w->damping.drag.density * DEM_PI / 6 * pow(t->equivalent_diameter, 3) * cube;
     if (!hold)
         return;
     // a held body is a wall to the others

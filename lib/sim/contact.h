@@ -6,11 +6,12 @@
 #define DEM_SIM_CONTACT_H
 
 #include "sim/contact_geometry.h"
+#include "sim/law/bond.h"
 #include "sim/law/turning.h"
 
 DEM_INLINE void load_law(const dem_features f, const dem_rows *rows, const uint32_t *row, wide law[LAW_SLOTS])
 {
-    const bool more = turns(f) || adheres(f) || f.roll_bound || f.jkr;
+    const bool more = turns(f) || adheres(f) || f.roll_bound || f.jkr || f.bonded;
     if (f.mixed) {
         for (int k = 0; k < (more ? LAW_SLOTS : LAW_MORE); k += 8)
             rows_load(rows->laws + k, LAW_SLOTS, row, law + k);
@@ -32,19 +33,21 @@ DEM_INLINE void tally_add(double sum[DEM_BLOCK_LANES], size_t g, wide x)
 
 // energy dissipated since the last step [J]
 typedef struct contact_loss {
-    wide friction, viscous;
+    wide friction, viscous, broken;
 } contact_loss;
 
 // power of a moving wall [W], for measuring
 DEM_INLINE void put_losses(const contact_loss *loss, wide power, size_t g, dem_contact_record *records)
 {
-    double friction[DEM_WIDTH], viscous[DEM_WIDTH], work[DEM_WIDTH];
+    double friction[DEM_WIDTH], viscous[DEM_WIDTH], broken[DEM_WIDTH], work[DEM_WIDTH];
+    wide_store(broken, loss->broken);
     wide_store(friction, loss->friction);
     wide_store(viscous, loss->viscous);
     wide_store(work, power);
     for (size_t i = 0; i < DEM_WIDTH; i++) {
         records[g + i].lost_friction = friction[i];
         records[g + i].lost_viscous = viscous[i];
+        records[g + i].broken = broken[i];
         records[g + i].wall_power = work[i];
     }
 }
@@ -192,10 +195,10 @@ DEM_INLINE contact_moment contact_turning(const dem_features f, const dem_contac
 
 /// Which contacts of JKR hold: those that overlap, and those that have done so and not yet parted. `gone`: how far they
 /// are from parting [m]; `held`: the energy that is left there [J].
-DEM_INLINE wide_mask jkr_holds(const wide *law, wide reduced, wide overlap, wide attached, wide *gone, wide *held)
+DEM_INLINE wide_mask jkr_holds(const jkr_pair *surfaces, wide overlap, wide attached, wide *gone, wide *held)
 {
-    wide modulus = wide_all(0.5) * law[LAW_HERTZ], k = jkr_softness(law[LAW_JKR], modulus, reduced), end;
-    *held = jkr(k, modulus, reduced, jkr_parting(k, &end)).energy;
+    wide end = surfaces->end, reduced = surfaces->reduced;
+    *held = jkr(surfaces, surfaces->least).energy;
     *gone = wide_fnma(end, reduced, overlap);
     return wide_less(wide_or_zero(wide_less(wide_all(0), attached), end * reduced), overlap);
 }
@@ -211,8 +214,11 @@ DEM_INLINE void contact_law(const dem_features f, const dem_rows *rows, const de
     wide held = zero, gone = overlap;
     if (needs_reduced(f))
         reduced = wide_load(batch->at[AT_REDUCED] + g);
-    if (f.jkr)
-        on = jkr_holds(law, reduced, overlap, wide_load(c->attached + at), &gone, &held);
+    jkr_pair surfaces = {zero, zero, zero, zero, zero};
+    if (f.jkr) {
+        surfaces = jkr_surfaces(law[LAW_JKR], wide_all(0.5) * law[LAW_HERTZ], reduced);
+        on = jkr_holds(&surfaces, overlap, wide_load(c->attached + at), &gone, &held);
+    }
     wide3 n = get3(batch, AT_NORMAL, g), v = get3(batch, AT_VELOCITY, g);
     // at the start nothing has passed; the step to come is as good
     wide per_step = wide_all(1 / (job->last_step > 0 ? job->last_step : job->next_step));
@@ -223,19 +229,31 @@ DEM_INLINE void contact_law(const dem_features f, const dem_rows *rows, const de
     }
     if (f.young)
         area = wide_load(batch->at[AT_AREA] + g);
-    normal_law normal = normal_elastic(f, law, overlap, reduced, area);
+    normal_law normal = normal_elastic(f, law, &surfaces, overlap, reduced, area);
+    bond_law bonds = {on, on, zero, zero};
+    if (f.bonded) {
+        wide3 held_by = spring_turn(load3(c->spring, at), n, step * wide_load(batch->at[AT_TURN] + g));
+        bonds = bond(law, &normal, wide_load(c->bond + at), reduced, overlap, vn, held_by, along3(v, zero - vn, n),
+                     step, !(job->last_step > 0));
+        on = wide_either(on, bonds.on);
+        // neither a tail nor a beginning
+        law[LAW_FLOOR] = wide_select(bonds.holds, wide_all(-INFINITY), law[LAW_FLOOR]);
+        gone = wide_select(bonds.holds, wide_all(1e100), gone);
+        if (!record)
+            wide_store(c->bond + at, bonds.state);
+    }
     normal_damp(f, law, &normal, inverse_mass, mass, gone, vn, step, per_step);
 
     wide weight = f.weighted ? wide_load(c->weight + at) : wide_all(1);
     wide3 force = {zero, zero, zero}, spring = force;
     wide slide = zero;
     wide slide_before = zero, slide_damping = zero;
-    contact_loss loss = {zero, zero};
+    contact_loss loss = {zero, zero, bonds.released};
     if (f.friction) {
         wide turn = step * wide_load(batch->at[AT_TURN] + g);
         spring = spring_turn(load3(c->spring, at), n, turn);
         wide3 slip = along3(v, zero - vn, n);
-        friction_law t = friction(f, law, &normal, reduced, overlap, vn, mass, spring, slip, step, on);
+        friction_law t = friction(f, law, &normal, reduced, overlap, vn, mass, spring, slip, step, on, bonds.holds);
         force = t.force;
         spring = t.spring;
         slide = t.stiffness;
@@ -278,7 +296,7 @@ DEM_INLINE void contact_law(const dem_features f, const dem_rows *rows, const de
     }
     if (f.weighted) {
         force = scale3(force, weight);
-        loss = (contact_loss){loss.friction * weight, loss.viscous * weight};
+        loss = (contact_loss){loss.friction * weight, loss.viscous * weight, loss.broken * weight};
     }
     dem_contact_record *records = record ? job->records + (at - g - job->begin) : NULL;
     if (record)
@@ -310,6 +328,8 @@ DEM_INLINE void contact_law(const dem_features f, const dem_rows *rows, const de
         tally_add(job->tally->friction, g, loss.friction);
     if (f.ledger && (damped(f) || f.jkr))
         tally_add(job->tally->viscous, g, loss.viscous);
+    if (f.ledger && f.bonded)
+        tally_add(job->tally->broken, g, loss.broken);
     if (f.roll_bound) {
         wide bound = law[LAW_ROLL_BOUND] * wide_load(batch->at[AT_RADIUS] + g) * normal_grip(f, &normal) * weight;
         wide_store(batch->at[AT_BOUND] + g, wide_or_zero(on, bound * wide_all(job->kick)));

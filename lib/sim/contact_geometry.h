@@ -118,7 +118,7 @@ DEM_INLINE bool adheres(const dem_features f)
 }
 DEM_INLINE bool needs_reduced(const dem_features f)
 {
-    return f.hertz || turns(f) || f.dmt;
+    return f.hertz || turns(f) || f.dmt || f.bonded;
 }
 
 /// 1 / (I + m r^2) of a body that rolls on a surface of radius r, with its mean moment I, and 1 / its least moment.

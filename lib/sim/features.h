@@ -14,6 +14,7 @@
     X(cut, "forces that do not pull")                                                                                  \
     X(local_mass, "the mass that the contact sees, not that of the bodies")                                            \
     X(friction, "a tangential spring with a cap, remembered by each contact")                                          \
+    X(decay, "friction that falls with the speed")                                                                     \
     X(mindlin, "a tangential stiffness that grows with the contact radius")                                            \
     X(slide_damping, "tangential dashpots")                                                                            \
     X(rolling, "a rolling spring with a cap, remembered by each contact")                                              \
@@ -23,6 +24,7 @@
     X(twist_constant, "a constant moment against twisting")                                                            \
     X(sjkr, "cohesion by the area of the overlap")                                                                     \
     X(jkr, "adhesion that deforms the surfaces, remembered by each contact")                                           \
+    X(bonded, "surfaces that hold until they break, remembered by each contact")                                       \
     X(dmt, "a constant adhesion")                                                                                      \
     X(offset, "spheres away from the centre of their body")                                                            \
     X(scaled, "bodies that scale their shape")                                                                         \
@@ -30,6 +32,7 @@
     X(mixed, "more than one law")                                                                                      \
     X(weighted, "several contacts of one pair share its force")                                                        \
     X(ledger, "energy that contacts dissipate is summed")                                                              \
+    X(soft, "one soft contact for all spheres of a pair of bodies")                                                    \
     X(watch, "contacts tell how near an automatic step is to its limit")                                               \
     X(moving, "walls that move")                                                                                       \
     X(reaction, "forces on walls are kept, for those that follow them")
@@ -62,6 +65,8 @@ typedef enum dem_law_slot {
     LAW_FRICTION,         ///< coefficient [-]
     LAW_KEEP_LEAST,       ///< bounds of what happens to the spring's length when k_t changes, so that the force stays
     LAW_KEEP_MOST,        ///< (0 to INFINITY), at most stays (0 to 1), or k_t does not change (1 to 1) [-]
+    LAW_FRICTION_MORE,    ///< coefficient at rest above that [-]
+    LAW_FRICTION_DECAY,   ///< which falls by exp(-this speed) [s/m]
     LAW_MORE = 16,  ///< from here on only with some of the features above
     LAW_ROLL_RATIO = LAW_MORE,  ///< k_r = this k_n R*^2 [-]
     LAW_ROLL_STIFFNESS,         ///< k_r that is given [N m/rad]
@@ -75,6 +80,10 @@ typedef enum dem_law_slot {
     LAW_ENERGY_DENSITY,         ///< of the overlap's area: pull by this A [Pa]
     LAW_ADHESION,               ///< 2 pi w: pull by this R* [N/m]
     LAW_JKR,                    ///< 2 pi w [N/m]; with E* of LAW_HERTZ
+    LAW_BOND_TENSION,           ///< largest pull [N]
+    LAW_BOND_SHEAR,             ///< largest tangential force [N]
+    LAW_BOND_GAP,               ///< surfaces nearer than this are bonded at the start; -INFINITY: none [m]
+    LAW_BOND_AGAIN,             ///< 1: whenever they touch [-]
     LAW_SLOTS = 32
 } dem_law_slot;
 

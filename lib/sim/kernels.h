@@ -28,9 +28,9 @@ typedef struct dem_rows {
     const double *walls;    ///< [16 a wall] see wall.h
 } dem_rows;
 
-/// Energy that the contacts of a segment have dissipated, in lanes [J], and the largest overlap ratio.
+/// Energy that the contacts of a segment have dissipated or let go, in lanes [J], and the largest overlap ratio.
 typedef struct dem_tally {
-    double friction[DEM_BLOCK_LANES], viscous[DEM_BLOCK_LANES], work[DEM_BLOCK_LANES];
+    double friction[DEM_BLOCK_LANES], viscous[DEM_BLOCK_LANES], broken[DEM_BLOCK_LANES], work[DEM_BLOCK_LANES];
     double overlap_ratio;
 } dem_tally;
 
@@ -40,6 +40,7 @@ typedef struct dem_contact_record {
     double overlap, normal_force, elastic_normal, elastic_slide, elastic_turn, reduced_mass, stiffness, slide_stiffness;
     double force[3];                     ///< on a [N]
     double lost_friction, lost_viscous;  ///< dissipated since the last step [J] (ledger)
+    double broken;                       ///< energy of bonds that broke in it [J] (ledger)
     double turning[3];                   ///< moment on a beside that of the force [N m]
     double wall_power;                   ///< of a moving wall [W]
     double radius_a, radius_b;
@@ -57,7 +58,9 @@ typedef struct dem_contact_columns {
     double *dash[3];                ///< force of the tangential dashpot in the last step [N] (ledger, slide_damping)
     double *roll[3];                ///< angle of the rolling spring [rad] (rolling)
     double *twist;                  ///< angle of the twisting spring [rad] (twisting)
-    double *attached;               ///< 1: surfaces hold on to each other [-] (jkr)
+    double *patch;                  ///< stiffness of the twisting spring in the last step [N m/rad] (soft)
+    double *bond;                   ///< 1: bonded, -1: broken [-] (bonded)
+    double *attached;               ///< 1: surfaces hold on to each other [-] (jkr), or the patch touches (soft)
     double *drag[3];                ///< moment not of the springs in the last step [N m] (ledger, with any of these)
     double *loss;                   ///< elastic force that was not passed on in the last step [N] (ledger, damped)
     double *reaction[3];            ///< force of the wall on the body [N] (walls, reaction)

@@ -96,14 +96,26 @@ static void grow_with_radius(const dem_pair_law *law, double *row, double modulu
     needs->mindlin = true;
 }
 
+// a bond needs the spring even where no friction is left once it has broken
+static bool has_friction(const dem_pair_law *law)
+{
+    return law->friction != DEM_FRICTION_NONE &&
+           (law->friction_coefficient > 0 || law->static_coefficient > 0 || law->cohesion == DEM_COHESION_BREAKABLE);
+}
+
 static dem_status fill_friction(const dem_scene *scene, const dem_pair_law *law, double *row, dem_features *needs,
                                 dem_error *error)
 {
     row[LAW_KEEP_LEAST] = row[LAW_KEEP_MOST] = 1;
-    if (law->friction == DEM_FRICTION_NONE || !(law->friction_coefficient > 0))
+    if (!has_friction(law))
         return DEM_OK;
     needs->friction = true;
     row[LAW_FRICTION] = law->friction_coefficient;
+    if (law->static_coefficient > law->friction_coefficient) {
+        row[LAW_FRICTION_MORE] = law->static_coefficient - law->friction_coefficient;
+        row[LAW_FRICTION_DECAY] = law->friction_decay;
+        needs->decay = true;
+    }
     if (law->friction == DEM_FRICTION_MINDLIN) {
         double young, shear;
         if (!dem_law_of_hertz(law) ||
@@ -167,12 +179,26 @@ static dem_status fill_twisting(const dem_scene *scene, const dem_pair_law *law,
     return DEM_OK;
 }
 
-static void fill_cohesion(const dem_pair_law *law, double *row, dem_features *needs)
+static dem_status fill_cohesion(const dem_scene *scene, const dem_pair_law *law, double *row, dem_features *needs,
+                                dem_error *error)
 {
+    row[LAW_BOND_GAP] = -INFINITY;
     if (law->cohesion == DEM_COHESION_SJKR && law->energy_density > 0) {
         row[LAW_ENERGY_DENSITY] = law->energy_density;
         needs->sjkr = true;
     }
+    if (law->cohesion != DEM_COHESION_BREAKABLE)
+        return DEM_OK;
+    if (scene->multiple != DEM_MULTIPLE_SUM)
+        return refuse(scene, law, "is breakable, for which \"contacts_between_clumps\" must be \"sum\"", error);
+    if (law->normal != DEM_NORMAL_LINEAR || law->friction == DEM_FRICTION_NONE)
+        return refuse(scene, law, "is breakable, which needs the normal law linear and friction", error);
+    row[LAW_BOND_TENSION] = law->bond_tension;
+    row[LAW_BOND_SHEAR] = law->bond_shear;
+    row[LAW_BOND_GAP] = law->bond_gap;
+    row[LAW_BOND_AGAIN] = law->bonded == DEM_BONDED_AT_TOUCH;
+    needs->bonded = true;
+    return DEM_OK;
 }
 
 static uint32_t row_equal_to(dem_laws *laws, const double row[LAW_SLOTS])
@@ -199,7 +225,7 @@ static dem_status add_law(const dem_scene *scene, const dem_pair_law *law, dem_l
     DEM_TRY(fill_friction(scene, law, row, needs, error));
     fill_rolling(law, row, needs);
     DEM_TRY(fill_twisting(scene, law, row, needs, error));
-    fill_cohesion(law, row, needs);
+    DEM_TRY(fill_cohesion(scene, law, row, needs, error));
     if (row[LAW_RATE] > 0 || row[LAW_ZETA] > 0 || row[LAW_SLIDE_RATE] > 0) {
         bool local = law->effective_mass == DEM_MASS_LOCAL;
         if (laws->damped && needs->local_mass != local)

@@ -42,6 +42,15 @@ static inline double law_reach(const double *law, double reduced)
     return 0.75 * k * cbrt(k / 4) * reduced;
 }
 
+/// How far beyond the touch a bond may hold [m]. `area_length` as above, at least.
+static inline double law_bond_reach(const double *law, double area_length)
+{
+    if (!(law[LAW_BOND_GAP] >= 0))
+        return 0;
+    double stretch = law[LAW_BOND_TENSION] / law_stiffness(law, area_length, 0);
+    return stretch > law[LAW_BOND_GAP] ? stretch : law[LAW_BOND_GAP];
+}
+
 /// Its contact radius where it bears nothing, of JKR (9 pi w R*^2 / (2 E*))^(1/3) [m].
 static inline double law_radius_at_rest(const double *law, double reduced)
 {

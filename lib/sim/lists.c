@@ -97,6 +97,8 @@ dem_status dem_lists_update(dem_world *w, dem_error *error)
     DEM_TRY(dem_refresh(w, error));
     double t2 = dem_clock();
     DEM_TRY(dem_contacts_rebuild(w, error));
+    if (w->features.soft)
+        DEM_TRY(dem_soft_reserve(w, error));
     double t3 = dem_clock();
     w->clocks[DEM_PASS_SEARCH].seconds += t1 - t0;
     w->clocks[DEM_PASS_REFRESH].seconds += t2 - t1;

@@ -5,6 +5,7 @@
 
 #include "base/status.h"
 #include "sim/bodies.h"
+#include "sim/fluid.h"
 #include "sim/motion.h"
 
 dem_status dem_views_create(dem_world *w, dem_error *error)
@@ -57,7 +58,10 @@ static dem_status visit_segments(dem_world *w, dem_contacts *contacts, int form,
                 return dem_fail_memory(error);
         dem_contact_job job = {contacts->columns, s->begin, s->end,          w->last_step, 0,
                                w->next_step,      &scratch, w->views.records};
-        (form < 0 ? any->pairs : any->walls[form])(w->features, &rows, &job);
+        if (w->features.soft)
+            dem_soft_records(w, i, form, w->views.records);
+        else
+            (form < 0 ? any->pairs : any->walls[form])(w->features, &rows, &job);
         for (size_t k = 0; k < size; k++) {
             size_t at = segment_place(s, k);
             dem_contact_item item = dem_contact_get(&contacts->columns, at);
@@ -130,6 +134,7 @@ static void visit_contact(void *user, dem_world *w, int form, const dem_contact_
     dem_views *v = &w->views;
     v->since.friction += r->lost_friction;
     v->since.viscous += r->lost_viscous;
+    v->since.broken += r->broken;
     v->since.work += w->last_step / 2 * r->wall_power;
     if (!r->touches)
         return;
@@ -230,6 +235,19 @@ static void note_holding(dem_world *w, size_t i)
     v->since.work -= w->last_step / 2 * power;
 }
 
+// the drag of a fluid at the time of the positions, and what it takes in the half step up to there
+static dem_vec3 fluid_force(dem_world *w, size_t i, dem_vec3 load)
+{
+    size_t row = w->bodies.place[i];
+    const double *motion = body_pose(&w->bodies, row) + 8, *inertia = w->bodies.inertia + DEM_ROW * row;
+    double half = w->last_step / 2;
+    dem_vec3 was = v3(motion[0], motion[1], motion[2]), ahead = dem_motion_velocity(w, row, load);
+    dem_vec3 impulse = dem_fluid_impulse(w, row, ahead, half);
+    dem_vec3 now = unlocked_velocity(v3_along(ahead, inertia[0], impulse), body_hold(&w->bodies, row));
+    w->views.since.drag -= v3_dot(impulse, v3_add(was, now)) / 2;
+    return v3_scale(impulse, 1 / half);
+}
+
 static dem_vec3 unwrapped(const dem_world *w, size_t row)
 {
     dem_vec3 x = body_position(&w->bodies, row);
@@ -262,6 +280,8 @@ static void view_body(dem_world *w, size_t i)
     bool damped = w->damping.local > 0 || w->damping.viscous > 0;
     damping d;
     uint32_t hold = body_hold(&w->bodies, row);
+    if (w->bodies.fluid && w->last_step > 0 && !(hold & DEM_HOLD_VELOCITY))
+        load[0] = v3_add(load[0], fluid_force(w, i, load[0]));
     if (damped) {
         d = damping_of(w, row, weight, load);
         spare_held(hold, &d);
@@ -339,6 +359,7 @@ dem_energy dem_ledger(const dem_world *w)
     for (size_t i = 0; i < w->segment_count * (1 + DEM_WALL_FORMS); i++) {
         e.friction += lanes(w->tallies[i].friction);
         e.viscous += lanes(w->tallies[i].viscous);
+        e.broken += lanes(w->tallies[i].broken);
         e.work += lanes(w->tallies[i].work);
     }
     for (size_t i = 0; i < w->segment_count; i++) {
@@ -355,7 +376,7 @@ static void balance(dem_world *w)
     dem_energy *e = &w->views.figures.energy, spent = dem_ledger(w);
     e->elastic = w->views.elastic;
     double now = e->kinetic + e->rotational + e->potential + e->elastic;
-    double gone = spent.friction + spent.viscous + spent.local + spent.drag - spent.work;
+    double gone = spent.friction + spent.viscous + spent.broken + spent.local + spent.drag - spent.work;
     if (w->steps == 0) {
         // a spring that the first sight of a sliding contact puts in is no energy that was there
         w->energy_start = now + gone;
@@ -364,11 +385,12 @@ static void balance(dem_world *w)
     e->start = w->energy_start;
     e->friction = spent.friction;
     e->viscous = spent.viscous;
+    e->broken = spent.broken;
     e->local = spent.local;
     e->drag = spent.drag;
     e->work = spent.work;
     double most = fmax(fmax(e->kinetic + e->rotational, e->elastic), fabs(e->potential - w->potential_start));
-    most = fmax(most, fmax(fabs(e->work), e->friction + e->viscous + e->local + e->drag));
+    most = fmax(most, fmax(fabs(e->work), e->friction + e->viscous + e->broken + e->local + e->drag));
     w->views.most_energy = fmax(w->views.most_energy, most);
     double off = now + gone - e->start;
     e->error = NAN;

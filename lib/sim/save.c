@@ -82,15 +82,13 @@ static uint64_t hash_constants(const dem_world *w)
         w->domain.high,
         {w->damping.local, w->damping.viscous, w->damping.local_frame + 2 * w->damping.exclude_gravity}};
     h = hash_bytes(h, loads, sizeof loads);
-    double numbers[9] = {w->time_def.step,
-                         w->multiple,
-                         w->domain.periodic[0],
-                         w->domain.periodic[1],
-                         w->domain.periodic[2],
-                         w->integrator.translation,
-                         w->integrator.rotation,
-                         w->held,
-                         w->kept};
+    const dem_drag_def *drag = &w->damping.drag;
+    double motion[] = {
+        w->integrator.translation, w->integrator.rotation, w->held,          w->kept,          drag->density,
+        drag->viscosity,           drag->velocity.x,       drag->velocity.y, drag->velocity.z, drag->buoyancy};
+    h = hash_bytes(h, motion, sizeof motion);
+    double numbers[] = {w->time_def.step,      w->multiple,           w->domain.periodic[0],
+                        w->domain.periodic[1], w->domain.periodic[2], w->soft.tau};
     return hash_bytes(h, numbers, sizeof numbers);
 }
 
@@ -355,7 +353,8 @@ dem_status dem_world_restore(dem_world *w, const void *bytes, size_t size, dem_e
     // where momenta of other domains go is made anew
     for (size_t i = 0; i < w->segment_count; i++)
         w->contacts.segments[i].dirty = true;
-    return dem_contacts_rebuild(w, error);
+    DEM_TRY(dem_contacts_rebuild(w, error));
+    return w->features.soft ? dem_soft_reserve(w, error) : DEM_OK;
 }
 
 uint64_t dem_world_hash(const dem_world *w)
@@ -371,8 +370,11 @@ uint64_t dem_world_hash(const dem_world *w)
         const dem_contacts *contacts = form < 0 ? &w->contacts : &w->wall_contacts[form];
         for (size_t i = 0; contacts->segments && i < w->segment_count; i++) {
             const dem_segment *s = &contacts->segments[i];
-            for (int k = 0; contacts->columns.spring[0] && k < 3; k++)
-                hash = hash_bytes(hash, contacts->columns.spring[k] + s->begin, (s->end - s->begin) * sizeof(double));
+            const dem_contact_columns *c = &contacts->columns;
+            const double *columns[] = {c->spring[0], c->spring[1], c->spring[2], c->bond};
+            for (int k = 0; k < 4; k++)
+                if (columns[k])
+                    hash = hash_bytes(hash, columns[k] + s->begin, (s->end - s->begin) * sizeof(double));
         }
     }
     return hash;

@@ -34,6 +34,8 @@ dem_pair_law dem_pair_law_defaults(void)
         .tangential_rate = NAN,
         .rescale = true,
         .rolling_stiffness = NAN,
+        .static_coefficient = NAN,
+        .friction_decay = 500,
         .rolling_damping = 0.3,
     };
 }

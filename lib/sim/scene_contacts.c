@@ -132,6 +132,8 @@ enum {
     FRICTION_STIFFNESS,
     FRICTION_STIFFNESS_RATIO,
     FRICTION_COEFFICIENT,
+    FRICTION_STATIC,
+    FRICTION_DECAY,
     FRICTION_RATE,
     FRICTION_RESCALE
 };
@@ -143,22 +145,66 @@ static const dem_field friction_table[] = {
                                   .dimension = DEM_DIMENSION_NONE, .range = DEM_RANGE_POSITIVE},
     [FRICTION_COEFFICIENT] = {"coefficient", dem_field_quantity, .at = offsetof(dem_pair_law, friction_coefficient),
                               true, DEM_DIMENSION_NONE, DEM_RANGE_FROM_0},
+    [FRICTION_STATIC] = {"static_coefficient", dem_field_quantity, .at = offsetof(dem_pair_law, static_coefficient),
+                         .dimension = DEM_DIMENSION_NONE, .range = DEM_RANGE_FROM_0},
+    [FRICTION_DECAY] = {"decay", dem_field_quantity, .at = offsetof(dem_pair_law, friction_decay),
+                        .dimension = DEM_DIMENSION_SLOWNESS, .range = DEM_RANGE_FROM_0},
     [FRICTION_RATE] = {"damping_rate", dem_field_quantity, .at = offsetof(dem_pair_law, tangential_rate),
                        .dimension = DEM_DIMENSION_RATE, .range = DEM_RANGE_FROM_0},
     [FRICTION_RESCALE] = {"rescale", dem_field_flag, .at = offsetof(dem_pair_law, rescale)},
-    DEM_UNBUILT("static_coefficient"),
 };
 static const dem_fields friction_fields = DEM_FIELDS(friction_table);
 
-// null: none. Without a name the law is the one that goes with the normal law
+// A key that only one law of an object has.
+typedef struct key_rule {
+    int key, law;
+    bool needed;  // by this law
+} key_rule;
+
+static dem_status check_keys(dem_scene_reader *r, const dem_scene_value *v, const dem_field *keys,
+                             const dem_choice *laws, int law, uint64_t given, const key_rule *rules, int count)
+{
+    for (const key_rule *rule = rules; rule < rules + count; rule++) {
+        const char *key = keys[rule->key].name, *name = laws->name;
+        for (const dem_choice *c = laws; c->name; c++)
+            name = c->value == rule->law ? c->name : name;
+        bool has = dem_given(given, rule->key), of = law == rule->law;
+        if (has && !of)
+            return dem_scene_refuse(r, v, "leave it out", "only the law %s has \"%s\"", name, key);
+        if (!has && of && rule->needed)
+            return dem_scene_refuse(r, v, "add it", "the law %s needs \"%s\"", name, key);
+    }
+    return DEM_OK;
+}
+
+// the keys of a law that may be left out; null: none, and nothing is given
+static dem_status read_keys(dem_scene_reader *r, const dem_scene_value *v, const dem_field *field, dem_pair_law *law,
+                            uint64_t *given)
+{
+    *given = 0;
+    return dem_json_is_null(v->json) ? DEM_OK : dem_fields_read(r, v, field->fields, law, given);
+}
+
+static dem_status check_static(dem_scene_reader *r, const dem_scene_value *v, const dem_pair_law *law, uint64_t given)
+{
+    if (dem_given(given, FRICTION_DECAY) && !dem_given(given, FRICTION_STATIC))
+        return dem_scene_refuse(r, v, "add it, or leave \"decay\" out", "has \"decay\" without \"static_coefficient\"");
+    if (law->static_coefficient < law->friction_coefficient)
+        return dem_scene_refuse(r, v, "\"coefficient\" is that of sliding surfaces; correct one of them",
+                                "has a \"static_coefficient\" below \"coefficient\"");
+    return DEM_OK;
+}
+
+// without a name the law is the one that goes with the normal law
 static dem_status read_friction(dem_scene_reader *r, const dem_scene_value *v, const dem_field *field, void *into)
 {
     dem_pair_law *law = into;
     uint64_t given;
-    if (dem_json_is_null(v->json))
+    if (!dem_json_is_null(v->json))
+        law->friction = dem_law_of_hertz(law) ? DEM_FRICTION_MINDLIN : DEM_FRICTION_LINEAR;
+    DEM_TRY(read_keys(r, v, field, law, &given));
+    if (!given)
         return DEM_OK;
-    law->friction = dem_law_of_hertz(law) ? DEM_FRICTION_MINDLIN : DEM_FRICTION_LINEAR;
-    DEM_TRY(dem_fields_read(r, v, field->fields, law, &given));
     bool mindlin = law->friction == DEM_FRICTION_MINDLIN;
     if (mindlin && !dem_law_of_hertz(law))
         return dem_scene_refuse(r, v, "use the law linear, or hertz for the normal force",
@@ -172,7 +218,7 @@ static dem_status read_friction(dem_scene_reader *r, const dem_scene_value *v, c
                                     "the law mindlin has no \"%s\"", friction_table[of_linear[i]].name);
     if (!mindlin && dem_given(given, FRICTION_RESCALE))
         return dem_scene_refuse(r, v, "leave it out", "the law linear has no \"rescale\"");
-    return DEM_OK;
+    return check_static(r, v, law, given);
 }
 
 // ---- rolling, twisting, cohesion
@@ -193,18 +239,14 @@ static const dem_field rolling_table[] = {
 };
 static const dem_fields rolling_fields = DEM_FIELDS(rolling_table);
 
-// null: none
 static dem_status read_rolling(dem_scene_reader *r, const dem_scene_value *v, const dem_field *field, void *into)
 {
+    static const key_rule rules[] = {{ROLLING_STIFFNESS, DEM_ROLLING_EPSD, false},
+                                     {ROLLING_DAMPING, DEM_ROLLING_EPSD, false}};
     dem_pair_law *law = into;
     uint64_t given;
-    if (dem_json_is_null(v->json))
-        return DEM_OK;
-    DEM_TRY(dem_fields_read(r, v, field->fields, law, &given));
-    for (int i = ROLLING_STIFFNESS; i <= ROLLING_DAMPING; i++)
-        if (law->rolling != DEM_ROLLING_EPSD && dem_given(given, i))
-            return dem_scene_refuse(r, v, "leave it out", "only the law epsd has \"%s\"", rolling_table[i].name);
-    return DEM_OK;
+    DEM_TRY(read_keys(r, v, field, law, &given));
+    return check_keys(r, v, rolling_table, rolling_laws, law->rolling, given, rules, 2);
 }
 
 static const dem_choice twisting_laws[] = {
@@ -221,31 +263,58 @@ static const dem_fields twisting_fields = DEM_FIELDS(twisting_table);
 
 static dem_status read_twisting(dem_scene_reader *r, const dem_scene_value *v, const dem_field *field, void *into)
 {
+    static const key_rule rules[] = {{TWISTING_COEFFICIENT, DEM_TWISTING_CONSTANT, true}};
     dem_pair_law *law = into;
     uint64_t given;
-    if (dem_json_is_null(v->json))
-        return DEM_OK;
-    DEM_TRY(dem_fields_read(r, v, field->fields, law, &given));
-    bool constant = law->twisting == DEM_TWISTING_CONSTANT;
-    if (constant == dem_given(given, TWISTING_COEFFICIENT))
-        return DEM_OK;
-    return constant ? dem_scene_refuse(r, v, "add it", "the law constant needs \"coefficient\"")
-                    : dem_scene_refuse(r, v, "leave it out", "the law marshall takes the coefficient of the friction");
+    DEM_TRY(read_keys(r, v, field, law, &given));
+    if (law->twisting == DEM_TWISTING_MARSHALL && dem_given(given, TWISTING_COEFFICIENT))
+        return dem_scene_refuse(r, v, "leave it out", "the law marshall takes the coefficient of the friction");
+    return check_keys(r, v, twisting_table, twisting_laws, law->twisting, given, rules, 1);
 }
 
-static const dem_choice cohesion_laws[] = {{"sjkr", DEM_COHESION_SJKR}, {"breakable", DEM_NOT_BUILT}, {NULL, 0}};
+static const dem_choice cohesion_laws[] = {
+    {"sjkr", DEM_COHESION_SJKR}, {"breakable", DEM_COHESION_BREAKABLE}, {NULL, 0}};
+static const dem_choice bonding_times[] = {
+    {"at_start", DEM_BONDED_AT_START}, {"at_touch", DEM_BONDED_AT_TOUCH}, {NULL, 0}};
+
+enum { COHESION_LAW, COHESION_DENSITY, COHESION_TENSION, COHESION_SHEAR, COHESION_BONDED, COHESION_GAP };
 static const dem_field cohesion_table[] = {
-    {"law", dem_field_choice, .at = offsetof(dem_pair_law, cohesion), .needed = true, .choices = cohesion_laws},
-    {"energy_density", dem_field_quantity, .at = offsetof(dem_pair_law, energy_density), true, DEM_DIMENSION_PRESSURE,
-     DEM_RANGE_FROM_0},
-    DEM_UNBUILT("tension"),
-    DEM_UNBUILT("shear"),
+    [COHESION_LAW] = {"law", dem_field_choice, .at = offsetof(dem_pair_law, cohesion), .needed = true,
+                      .choices = cohesion_laws},
+    [COHESION_DENSITY] = {"energy_density", dem_field_quantity, .at = offsetof(dem_pair_law, energy_density),
+                          .dimension = DEM_DIMENSION_PRESSURE, .range = DEM_RANGE_FROM_0},
+    [COHESION_TENSION] = {"tension", dem_field_quantity, .at = offsetof(dem_pair_law, bond_tension),
+                          .dimension = DEM_DIMENSION_FORCE, .range = DEM_RANGE_FROM_0},
+    [COHESION_SHEAR] = {"shear", dem_field_quantity, .at = offsetof(dem_pair_law, bond_shear),
+                        .dimension = DEM_DIMENSION_FORCE, .range = DEM_RANGE_FROM_0},
+    [COHESION_BONDED] = {"bonded", dem_field_choice, .at = offsetof(dem_pair_law, bonded), .choices = bonding_times},
+    [COHESION_GAP] = {"gap", dem_field_quantity, .at = offsetof(dem_pair_law, bond_gap),
+                      .dimension = DEM_DIMENSION_LENGTH, .range = DEM_RANGE_FROM_0},
 };
 static const dem_fields cohesion_fields = DEM_FIELDS(cohesion_table);
 
 static dem_status read_cohesion(dem_scene_reader *r, const dem_scene_value *v, const dem_field *field, void *into)
 {
-    return dem_json_is_null(v->json) ? DEM_OK : dem_fields_read(r, v, field->fields, into, NULL);
+    static const key_rule rules[] = {{COHESION_DENSITY, DEM_COHESION_SJKR, true},
+                                     {COHESION_TENSION, DEM_COHESION_BREAKABLE, true},
+                                     {COHESION_SHEAR, DEM_COHESION_BREAKABLE, true},
+                                     {COHESION_BONDED, DEM_COHESION_BREAKABLE, false},
+                                     {COHESION_GAP, DEM_COHESION_BREAKABLE, false}};
+    dem_pair_law *law = into;
+    uint64_t given;
+    DEM_TRY(read_keys(r, v, field, law, &given));
+    DEM_TRY(check_keys(r, v, cohesion_table, cohesion_laws, law->cohesion, given, rules, 5));
+    if (law->cohesion != DEM_COHESION_BREAKABLE)
+        return DEM_OK;
+    if (law->normal != DEM_NORMAL_LINEAR)
+        return dem_scene_refuse(r, v, "use the linear law, whose spring can pull, or \"bonds\"",
+                                "the law breakable needs the normal law linear");
+    if (law->friction == DEM_FRICTION_NONE)
+        return dem_scene_refuse(r, v, "add \"friction\", with the coefficient that is left once it is broken",
+                                "the law breakable holds the surfaces by the spring of the friction");
+    if (law->bonded == DEM_BONDED_AT_TOUCH && dem_given(given, COHESION_GAP))
+        return dem_scene_refuse(r, v, "leave it out", "surfaces that are bonded at_touch have no \"gap\"");
+    return DEM_OK;
 }
 
 // ---- contacts

@@ -126,6 +126,10 @@ static void put_friction(dem_json_writer *w, const dem_pair_law *law)
     else if (!mindlin)
         dem_json_put_number(w, "stiffness_ratio", law->stiffness_ratio);
     dem_json_put_number(w, "coefficient", law->friction_coefficient);
+    if (!isnan(law->static_coefficient)) {
+        dem_json_put_number(w, "static_coefficient", law->static_coefficient);
+        dem_json_put_number(w, "decay", law->friction_decay);
+    }
     put_known(w, "damping_rate", law->tangential_rate);
     if (mindlin)
         dem_json_put_bool(w, "rescale", law->rescale);
@@ -158,8 +162,16 @@ static void put_moments(dem_json_writer *w, const dem_pair_law *law)
     }
     if (law->cohesion != DEM_COHESION_NONE) {
         dem_json_open_object(w, "cohesion");
-        dem_json_put_string(w, "law", "sjkr");
-        dem_json_put_number(w, "energy_density", law->energy_density);
+        bool breakable = law->cohesion == DEM_COHESION_BREAKABLE, touch = law->bonded == DEM_BONDED_AT_TOUCH;
+        dem_json_put_string(w, "law", breakable ? "breakable" : "sjkr");
+        if (breakable) {
+            dem_json_put_number(w, "tension", law->bond_tension);
+            dem_json_put_number(w, "shear", law->bond_shear);
+            dem_json_put_string(w, "bonded", touch ? "at_touch" : "at_start");
+            if (!touch)
+                dem_json_put_number(w, "gap", law->bond_gap);
+        } else
+            dem_json_put_number(w, "energy_density", law->energy_density);
         dem_json_close(w, '}');
     }
 }
@@ -522,6 +534,17 @@ static void put_damping(dem_json_writer *w, const dem_damping_def *damping)
     dem_json_put_string(w, "local_frame", damping->local_frame == DEM_LOCAL_VECTOR ? "vector" : "space");
     dem_json_put_bool(w, "exclude_gravity", damping->exclude_gravity);
     dem_json_put_number(w, "viscous", damping->viscous);
+    const dem_drag_def *drag = &damping->drag;
+    if (!(drag->density > 0 || drag->viscosity > 0))
+        dem_json_put_raw(w, "drag", "null");
+    else {
+        dem_json_open_object(w, "drag");
+        dem_json_put_number(w, "density", drag->density);
+        dem_json_put_number(w, "viscosity", drag->viscosity);
+        put_vec(w, "velocity", drag->velocity);
+        dem_json_put_bool(w, "buoyancy", drag->buoyancy);
+        dem_json_close(w, '}');
+    }
     dem_json_close(w, '}');
 }
 
@@ -570,7 +593,8 @@ static void put_output(dem_json_writer *w, const dem_output_def *output)
 static dem_status put_scene(dem_json_writer *w, const dem_scene *scene, dem_error *error)
 {
     static const char *const multiples[] = {
-        [DEM_MULTIPLE_SUM] = "sum", [DEM_MULTIPLE_MEAN] = "mean", [DEM_MULTIPLE_MERGE] = "merge"};
+        [DEM_MULTIPLE_SUM] = "sum", [DEM_MULTIPLE_MEAN] = "mean", [DEM_MULTIPLE_MERGE] = "merge",
+        [DEM_MULTIPLE_SOFT] = "soft"};
     dem_json_open_object(w, NULL);
     dem_json_put_string(w, "schema", "dem-scene/1");
     dem_json_put_string(w, "title", text_of(scene->title));
@@ -589,6 +613,14 @@ static dem_status put_scene(dem_json_writer *w, const dem_scene *scene, dem_erro
     dem_json_put_string(w, "rotation", dem_rotations[scene->integrator.rotation].name);
     dem_json_close(w, '}');
     dem_json_put_string(w, "contacts_between_clumps", multiples[scene->multiple]);
+    if (scene->multiple == DEM_MULTIPLE_SOFT) {
+        dem_json_open_object(w, "soft");
+        if (scene->soft.tau > 0)
+            dem_json_put_number(w, "tau", scene->soft.tau);
+        else
+            dem_json_put_string(w, "tau", "auto");
+        dem_json_close(w, '}');
+    }
     put_measures(w, scene);
     put_output(w, &scene->output);
     dem_json_close(w, '}');

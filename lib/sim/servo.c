@@ -56,9 +56,8 @@ static dem_status prepare(dem_walls *walls, size_t i, dem_error *error)
     s->direction = v3_unit(s->direction);
     for (int k = 0; k < 2; k++)
         for (int e = 0; e < 2; e++)
-            if (s->extent[k].walls[e] >= walls->count ||
-                (has_extents(s) && !(s->extent[k].length > 0) &&
-                 walls->items[s->extent[k].walls[e]].form != DEM_FORM_PLANE))
+            if (s->extent[k].walls[e] >= walls->count || (has_extents(s) && !(s->extent[k].length > 0) &&
+                                                          walls->items[s->extent[k].walls[e]].form != DEM_FORM_PLANE))
                 return dem_fail(error, DEM_BAD_INPUT,
                                 "an extent of the servo of wall \"%.60s\" is not between two planes; name two, or "
                                 "give a length",

@@ -1,10 +1,10 @@
 /// Servo walls: they move along a direction until the bodies push back with a given force (PHYSICS 5).
 ///
-/// The force is that of the contact pass, summed by segment and then in their order, so that any number of threads gives
-/// the same bits. A velocity is held for one step: v = gain (F - F now) / (h sum(k + c / h)), which takes `gain` of what
-/// is missing off in that step where the bodies stay. The dashpots c are in it, or a stiff contact with a strong one
-/// would overshoot. With a mass m, v += h (F - F now) / m, where m is at least h^2 sum(k + c / h), so that no step is
-/// too long for it.
+/// The force is that of the contact pass, summed by segment and then in their order, so that any number of threads
+/// gives the same bits. A velocity is held for one step: v = gain (F - F now) / (h sum(k + c / h)), which takes `gain`
+/// of what is missing off in that step where the bodies stay. The dashpots c are in it, or a stiff contact with a
+/// strong one would overshoot. With a mass m, v += h (F - F now) / m, where m is at least h^2 sum(k + c / h), so that
+/// no step is too long for it.
 #ifndef DEM_SIM_SERVO_H
 #define DEM_SIM_SERVO_H
 

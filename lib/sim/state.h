@@ -5,6 +5,7 @@
 #ifndef DEM_SIM_STATE_H
 #define DEM_SIM_STATE_H
 
+#include "base/clock.h"
 #include "base/memory.h"
 #include "base/threads.h"
 #include "dem/world.h"
@@ -13,6 +14,7 @@
 #include "sim/kernels.h"
 #include "sim/laws.h"
 #include "sim/mesh_touch.h"
+#include "sim/soft.h"
 #include "sim/region.h"
 #include "sim/template.h"
 #include "sim/walls.h"
@@ -43,6 +45,7 @@ enum {
       "momenta before the contacts")                                                                                   \
     X(uint32_t, hold, 1, "-", (w)->held, "what of the motion is held")                                                 \
     X(double, kept, 6, "m/s, rad/s", (w)->kept, "velocity and spin that are held")                                     \
+    X(double, fluid, 4, "N s, J", fluid_drags(&(w)->damping.drag), "impulse of the drag in the last step")             \
     X(double, turning, 3, "rad/s2", (w)->integrator.rotation == DEM_ROTATION_WALTON_BRAUN,                             \
       "rate of the spin in the body, a step before")
 
@@ -55,6 +58,11 @@ typedef struct dem_bodies {
 #undef COLUMN
     uint32_t *place;  ///< [count] row of the i-th body of the scene
 } dem_bodies;
+
+static inline bool fluid_drags(const dem_drag_def *drag)
+{
+    return drag->density > 0 || drag->viscosity > 0;
+}
 
 /// Two bodies whose bounding balls are nearer than the skin; a < b, or a == b across a periodic side.
 typedef struct dem_pair {
@@ -170,6 +178,8 @@ struct dem_world {
     const dem_contact_instance *instance, *wall_instance;
     double *shifts;             ///< [4 an image] (periodic)
     double reach;               ///< how far beyond the touch contacts may hold [m]
+    double ahead;               ///< contacts are listed so much before they touch (soft) [m]
+    dem_soft soft;
     double skin, margin_least;  ///< of the search; of the candidates, by radius: see refresh.h [m]
     int threads;
     size_t domain_bodies;  ///< bodies of a domain: their momenta are written by one thread
@@ -265,8 +275,5 @@ static inline double body_mass(const dem_world *w, size_t row)
     double scale = body_scale(&w->bodies, row), cube = scale * scale * scale;
     return w->templates.items[w->bodies.shape[row]].mass * cube;
 }
-
-/// Seconds since some start.
-double dem_clock(void);
 
 #endif

@@ -147,6 +147,16 @@ static const double *law_of(const dem_world *w, const dem_contact_columns *c, si
     return w->laws.rows + (c->law ? (size_t)LAW_SLOTS * c->law[at] : 0);
 }
 
+// whether a contact that does not touch counts: where it may hold, and all that are `listed`
+static bool counts(const dem_world *w, const dem_contact_columns *c, const dem_touch *t, bool listed)
+{
+    if (listed || t->overlap > 0)
+        return true;
+    // at the start nothing is bonded yet
+    bool may = w->features.jkr || w->steps == 0 || (c->bond && c->bond[t->place] > 0);
+    return may && t->overlap > -w->reach;
+}
+
 static void add_pairs(const dem_world *w, size_t row, bool listed, body_problem *p)
 {
     for (size_t i = w->pairs.adjacency_first[row]; i < w->pairs.adjacency_first[row + 1]; i++) {
@@ -154,7 +164,7 @@ static void add_pairs(const dem_world *w, size_t row, bool listed, body_problem 
         const dem_segment *s = &w->contacts.segments[pair->a / DEM_SEGMENT];
         for (size_t k = 0; k < pair->count; k++) {
             dem_touch t = dem_touch_of_pair(w, segment_place(s, pair->start + k));
-            if (!listed && t.overlap <= -w->reach)
+            if (!counts(w, &w->contacts.columns, &t, listed))
                 continue;
             dem_vec3 from_a = v3_sub(t.point, body_position(&w->bodies, pair->a));
             dem_vec3 from_b = v3_sub(t.point, v3_add(body_position(&w->bodies, pair->b), t.shift));
@@ -179,7 +189,7 @@ static void add_walls(const dem_world *w, size_t row, bool listed, body_problem 
                 continue;
             dem_touch t = dem_touch_of_wall(w, (dem_wall_form)form, at);
             dem_vec3 arm = v3_sub(t.point, body_position(&w->bodies, row));
-            if (t.overlap > -w->reach || (listed && form != DEM_FORM_MESH))
+            if (counts(w, &contacts->columns, &t, listed && form != DEM_FORM_MESH))
                 add_contact(w, p, &t, law_of(w, &contacts->columns, at), (uint32_t[]){(uint32_t)row, 0},
                             (dem_vec3[]){arm, arm}, true);
         }
@@ -191,8 +201,12 @@ static dem_step_bound body_bound(const dem_world *w, size_t row, bool listed)
 {
     body_problem p;
     memset(&p, 0, sizeof p);
-    add_pairs(w, row, listed, &p);
-    add_walls(w, row, listed, &p);
+    if (w->features.soft)
+        dem_soft_problem(w, row, listed, p.stiffness, p.damping);
+    else {
+        add_pairs(w, row, listed, &p);
+        add_walls(w, row, listed, &p);
+    }
     double k = dem_largest_eigenvalue6(p.stiffness),
            c = w->laws.damped || w->features.rolling ? dem_largest_eigenvalue6(p.damping) : 0;
     return (dem_step_bound){k, c, limit_of(k, c), row};
@@ -239,8 +253,7 @@ static double stiffest_contact(const dem_world *w, size_t row, const double *law
     return law_stiffness(law, r / 2, radius) / mass;
 }
 
-// a speed that impacts may have: twice the present one, or of a fall by some sizes [m/s]
-static double impact_speed(const dem_world *w)
+double dem_step_impact_speed(const dem_world *w)
 {
     double fastest = 0, size = 0;
     for (size_t row = 0; row < w->bodies.count; row++) {
@@ -252,7 +265,7 @@ static double impact_speed(const dem_world *w)
 
 double dem_step_accurate(const dem_world *w)
 {
-    double highest = 0, speed = w->features.hertz ? impact_speed(w) : 0;
+    double highest = 0, speed = w->features.hertz ? dem_step_impact_speed(w) : 0;
     size_t n = w->laws.material_count;
     for (size_t row = 0; row < w->bodies.count; row++) {
         uint32_t material = w->templates.items[w->bodies.shape[row]].material;

@@ -78,8 +78,8 @@ static double table_steepest(const dem_wall_table *t, int component)
         double length = t->time[row + 1] - t->time[row];
         double a = entry(t, row, component), b = entry(t, row + 1, component), steepest = fabs(b - a);
         if (t->cubic)
-            steepest = cubic_steepest(a, b, length * slope_at(t, row, component),
-                                      length * slope_at(t, row + 1, component));
+            steepest =
+                cubic_steepest(a, b, length * slope_at(t, row, component), length * slope_at(t, row + 1, component));
         most = larger(most, steepest / length);
     }
     return most;

@@ -1,11 +1,11 @@
 #include <stdlib.h>
 #include <string.h>
-#include <time.h>
 
 #include "base/status.h"
 #include "sim/bodies.h"
 #include "sim/broad.h"
 #include "sim/contacts.h"
+#include "sim/fluid.h"
 #include "sim/lists.h"
 #include "sim/measure.h"
 #include "sim/motion.h"
@@ -21,13 +21,6 @@ static const char *const pass_names[DEM_PASSES] = {
 };
 
 enum { THREADS_FROM = 512, DOMAINS = 8, DOMAIN_LEAST = 256, DOMAIN_MOST = 4096 };
-
-double dem_clock(void)
-{
-    struct timespec t;
-    clock_gettime(CLOCK_MONOTONIC, &t);
-    return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
-}
 
 // ---- making a world
 
@@ -65,7 +58,8 @@ static void set_features(dem_world *w, const dem_body_def *defs, size_t count)
     f->periodic = w->periodic;
     f->moving = w->walls.move;
     f->reaction = w->walls.servo;
-    f->weighted = w->multiple != DEM_MULTIPLE_SUM;
+    f->weighted = w->multiple == DEM_MULTIPLE_MEAN || w->multiple == DEM_MULTIPLE_MERGE;
+    f->soft = w->multiple == DEM_MULTIPLE_SOFT;
     for (size_t i = 0; i < count; i++) {
         f->offset |= !w->templates.items[defs[i].shape].centred;
         f->scaled |= defs[i].scale != 1;
@@ -118,15 +112,26 @@ static dem_status make_lists(dem_world *w, dem_error *error)
     return dem_views_create(w, error);
 }
 
-// of the largest spheres, under the law that lets them hold farthest
-static double longest_reach(const dem_world *w)
+// under the law that lets surfaces hold farthest; of JKR for the largest spheres, of bonds for the smallest
+static dem_status set_reach(dem_world *w, dem_error *error)
 {
-    double radius = 0, reach = 0;
-    for (size_t row = 0; row < w->bodies.count; row++)
-        radius = larger(radius, w->templates.items[w->bodies.shape[row]].radius_max * body_scale(&w->bodies, row));
-    for (size_t i = 0; w->features.jkr && radius > 0 && i < w->laws.count; i++)
-        reach = larger(reach, law_reach(w->laws.rows + LAW_SLOTS * i, radius));
-    return reach;
+    double most = 0, least = INFINITY;
+    for (size_t row = 0; row < w->bodies.count; row++) {
+        const dem_template *t = &w->templates.items[w->bodies.shape[row]];
+        most = larger(most, t->radius_max * body_scale(&w->bodies, row));
+        least = smaller(least, t->radius_min * body_scale(&w->bodies, row));
+    }
+    for (size_t i = 0; (w->features.jkr || w->features.bonded) && most > 0 && i < w->laws.count; i++) {
+        const double *law = w->laws.rows + LAW_SLOTS * i;
+        double bond = law_bond_reach(law, least * least / (least + most));
+        if (!(bond <= least))
+            return dem_fail(error, DEM_BAD_INPUT,
+                            "breakable cohesion would hold until surfaces are %.3g m apart, more than the smallest "
+                            "radius, %.3g m; lower \"tension\" or \"gap\", or raise the stiffness",
+                            bond, least);
+        w->reach = larger(w->reach, larger(law_reach(law, most), bond));
+    }
+    return DEM_OK;
 }
 
 static void set_holds(dem_world *w, const dem_body_def *defs, size_t count)
@@ -146,6 +151,9 @@ static dem_status make_state(dem_world *w, const dem_scene *scene, dem_error *er
     DEM_TRY(dem_templates_create(scene, &w->templates, error));
     DEM_TRY(dem_laws_create(scene, &w->laws, error));
     DEM_TRY(dem_walls_create(w->ctx, scene, &w->walls, error));
+    if (w->walls.servo && w->multiple == DEM_MULTIPLE_SOFT)
+        return dem_fail(error, DEM_BAD_INPUT,
+                        "servo walls cannot measure soft contacts yet; set contacts_between_clumps to \"sum\"");
     DEM_TRY(dem_place_bodies(w, scene, &defs, &count, error));
     set_holds(w, defs, count);
     set_features(w, defs, count);
@@ -161,7 +169,8 @@ static dem_status make_state(dem_world *w, const dem_scene *scene, dem_error *er
     w->team = dem_team_create(w->threads);
     if (!w->team)
         return dem_fail_memory(error);
-    w->reach = longest_reach(w);
+    DEM_TRY(dem_soft_create(w, scene->soft.tau, error));
+    DEM_TRY(set_reach(w, error));
     w->skin = larger(dem_broad_skin(w), 2.2 * w->reach);
     DEM_TRY(dem_search_create(w, error));
     if (w->periodic)
@@ -180,6 +189,14 @@ static dem_status make_state(dem_world *w, const dem_scene *scene, dem_error *er
     return DEM_OK;
 }
 
+static dem_status check_fluid(const dem_drag_def *drag, dem_error *error)
+{
+    if (drag->density >= 0 && drag->viscosity >= 0 && isfinite(drag->density + drag->viscosity) &&
+        isfinite(v3_norm2(drag->velocity)))
+        return DEM_OK;
+    return dem_fail(error, DEM_USAGE, "damping.drag: has a number that cannot be; give density and viscosity from 0");
+}
+
 static dem_status check_schemes(const dem_scene *scene, dem_error *error)
 {
     if ((unsigned)scene->integrator.translation < DEM_TRANSLATION_SCHEMES &&
@@ -192,6 +209,7 @@ dem_status dem_world_create(const dem_ctx *ctx, const dem_scene *scene, dem_worl
 {
     *world = NULL;
     DEM_TRY(check_schemes(scene, error));
+    DEM_TRY(check_fluid(&scene->damping.drag, error));
     dem_world *w = *world = aligned_alloc(64, (sizeof *w + 63) / 64 * 64);
     if (!w)
         return dem_fail_memory(error);
@@ -245,6 +263,7 @@ void dem_world_destroy(dem_world *w)
         free(w->candidates[t].pairs);
         free(w->candidates[t].work);
     }
+    dem_soft_release(w);
     dem_team_destroy(w->team);
     dem_views_release(&w->views);
     dem_regions_release(w->regions);
@@ -378,11 +397,17 @@ static void step_part(void *user, int which)
         dem_mesh_touch_measure(w, begin, end);
     if (w->features.weighted)
         dem_weigh_contacts(w, begin, end);
-    wall_pass(w, begin, end, kick);
+    if (w->features.soft)
+        dem_soft_walls(w, begin, end, kick, part);
+    else
+        wall_pass(w, begin, end, kick);
     double t1 = dem_clock();
     if (w->walls.servo)
         dem_servo_gather(w, begin, end);
-    contact_pass(w, begin, end, kick);
+    if (w->features.soft)
+        dem_soft_pairs(w, begin, end, kick, part);
+    else
+        contact_pass(w, begin, end, kick);
     double t2 = dem_clock();
     dem_team_meet(w->team);
     dem_contacts_add_slots(w, begin * DEM_SEGMENT, end * DEM_SEGMENT);
@@ -393,7 +418,11 @@ static void step_part(void *user, int which)
         dem_team_meet(w->team);
     }
     double t3 = dem_clock();
+    if (w->bodies.fluid)
+        dem_fluid_push(w, begin * DEM_SEGMENT, end * DEM_SEGMENT, kick);
     motion_pass(w, begin, end, kick, part);
+    if (w->bodies.fluid && w->ledger)
+        dem_fluid_tally(w, begin * DEM_SEGMENT, end * DEM_SEGMENT);
     double t4 = dem_clock();
     if (part == 0) {
         w->clocks[DEM_PASS_WALLS].seconds += t1 - t0;

@@ -142,9 +142,6 @@ mentions 'nowhere.json: no such file'
 sed 's/"stiffness"/"stifness"/' box.json >typo.json
 run 3 dem-run typo.json
 says 'dem-run: error: typo.json:6: unknown key "stifness" (column 36); did you mean "stiffness"?'
-sed 's/"friction": {/"friction": { "static_coefficient": 1,/' box.json >later.json
-run 3 dem-run later.json
-mentions 'not built yet'
 run 4 dem-run box.json --steps 5 -q -o /proc/nowhere
 one_line
 # ---- what else can be measured and written

@@ -66,8 +66,15 @@ typedef enum dem_twisting_law {
 
 typedef enum dem_cohesion_law {
     DEM_COHESION_NONE,
-    DEM_COHESION_SJKR,  ///< pull by an energy density times the area of the overlap
+    DEM_COHESION_SJKR,       ///< pull by an energy density times the area of the overlap
+    DEM_COHESION_BREAKABLE,  ///< surfaces hold, both ways, until the pull or the shear is too large
 } dem_cohesion_law;
+
+/// When surfaces of breakable cohesion are bonded. What has broken stays so until they have parted.
+typedef enum dem_bonded {
+    DEM_BONDED_AT_START,  ///< those that touch when the run starts (nearer than the gap), as contact bonds of PFC
+    DEM_BONDED_AT_TOUCH,  ///< these, and all that come to touch later
+} dem_bonded;
 
 /// The law between two materials.
 typedef struct dem_pair_law {
@@ -81,6 +88,8 @@ typedef struct dem_pair_law {
     dem_tail tail;
     dem_friction_law friction;
     double friction_coefficient;  ///< [-]
+    double static_coefficient;    ///< at rest: mu = mu_d + (mu_s - mu_d) exp(-decay |v_t|) [-]; NAN: the same
+    double friction_decay;        ///< how fast friction falls with the speed [s/m]
     double tangential_stiffness;  ///< of the linear law [N/m]; NAN: stiffness_ratio of the normal one
     double stiffness_ratio;       ///< k_t / k_n [-]
     double tangential_rate;       ///< c_t = m_eff G_t [1/s]; NAN: c_t = c_n sqrt(k_t / k_n) with a restitution, else 0
@@ -94,6 +103,10 @@ typedef struct dem_pair_law {
     double twisting_coefficient;  ///< mu_tw of the constant law [-]
     dem_cohesion_law cohesion;
     double energy_density;  ///< of SJKR [J/m^3]
+    double bond_tension;    ///< strength of breakable cohesion: largest pull [N]
+    double bond_shear;      ///< and largest tangential force [N]
+    dem_bonded bonded;
+    double bond_gap;  ///< surfaces nearer than this are bonded at the start [m]
 } dem_pair_law;
 
 /// One kind of grain. Exactly one of `clump_file`, `clump`, `sphere_radius` tells its form.
@@ -255,11 +268,21 @@ typedef enum dem_local_frame {
     DEM_LOCAL_VECTOR,  ///< force and moment as vectors against the velocity
 } dem_local_frame;
 
+/// A fluid that flows evenly and drags each body as the sphere of its volume (Schiller & Naumann 1933). Density and
+/// viscosity 0: there is none.
+typedef struct dem_drag_def {
+    double density;     ///< [kg/m^3]
+    double viscosity;   ///< dynamic [Pa s]
+    dem_vec3 velocity;  ///< [m/s]
+    bool buoyancy;      ///< bodies weigh less by the fluid they displace
+} dem_drag_def;
+
 typedef struct dem_damping_def {
     double local;  ///< Cundall's alpha, 0..1 [-]
     dem_local_frame local_frame;
     bool exclude_gravity;  ///< local damping acts on the contact forces only
     double viscous;        ///< F = -c m v, T = -c L [1/s]
+    dem_drag_def drag;
 } dem_damping_def;
 
 /// How positions follow from forces, one evaluation of the forces a step (PHYSICS 2.1).
@@ -290,7 +313,16 @@ typedef struct dem_integrator_def {
 } dem_integrator_def;
 
 /// How several contacts of one pair of bodies add up.
-typedef enum dem_multiple { DEM_MULTIPLE_SUM, DEM_MULTIPLE_MEAN, DEM_MULTIPLE_MERGE } dem_multiple;
+typedef enum dem_multiple {
+    DEM_MULTIPLE_SUM,
+    DEM_MULTIPLE_MEAN,
+    DEM_MULTIPLE_MERGE,
+    DEM_MULTIPLE_SOFT,  ///< one contact by a soft maximum of the overlaps, whatever the number of spheres
+} dem_multiple;
+
+typedef struct dem_soft_def {
+    double tau;  ///< length of the soft maximum, .2 to .3 of the typical largest overlap [m]; 0: by likely impacts
+} dem_soft_def;
 
 typedef struct dem_time_def {
     double end;            ///< [s]; NAN: not given
@@ -344,6 +376,7 @@ typedef struct dem_scene {
     dem_damping_def damping;
     dem_integrator_def integrator;
     dem_multiple multiple;
+    dem_soft_def soft;
     const dem_measure_def *measures;
     size_t measure_count;
     dem_output_def output;

@@ -56,10 +56,20 @@ typedef struct friction_law {
     wide stiffness, old_stiffness, damping;  ///< of the spring, now and a step ago, and of the dashpot [N/m, N s/m]
 } friction_law;
 
+/// Friction coefficient at a tangential velocity.
+DEM_INLINE wide friction_coefficient(const dem_features f, const wide *law, wide3 slip)
+{
+    if (!f.decay)
+        return law[LAW_FRICTION];
+    wide falls = wide_all(0) - law[LAW_FRICTION_DECAY] * wide_sqrt(dot3(slip, slip));
+    return wide_fma(law[LAW_FRICTION_MORE], wide_exp(falls), law[LAW_FRICTION]);
+}
+
 /// `spring` has been turned; `slip` is the tangential velocity of the second surface over the first [m/s], `vn` that
-/// of separation; `step` the time since the last one [s].
+/// of separation; `step` the time since the last one [s]. Where the surfaces are `bonded`, there is no cap.
 DEM_INLINE friction_law friction(const dem_features f, const wide *law, const normal_law *n, wide reduced, wide overlap,
-                                 wide vn, wide mass, wide3 spring, wide3 slip, wide step, wide_mask on)
+                                 wide vn, wide mass, wide3 spring, wide3 slip, wide step, wide_mask on,
+                                 wide_mask bonded)
 {
     wide zero = wide_all(0);
     wide stiffness = law[LAW_SLIDE_STIFFNESS] + law[LAW_SLIDE_RATIO] * n->stiffness, old_stiffness = stiffness;
@@ -83,7 +93,9 @@ DEM_INLINE friction_law friction(const dem_features f, const wide *law, const no
     if (f.slide_damping)
         force = along3(force, damping, slip);
 
-    wide size2 = dot3(force, force), cap = law[LAW_FRICTION] * normal_grip(f, n);
+    wide size2 = dot3(force, force), cap = friction_coefficient(f, law, slip) * normal_grip(f, n);
+    if (f.bonded)
+        cap = wide_select(bonded, wide_all(1e150), cap);
     wide_mask slides = wide_less(cap * cap, size2);
     wide part = cap * wide_rsqrt(size2), per_stiffness = wide_all(1) / stiffness;
     wide3 capped = scale3(force, part), left = capped;

@@ -20,30 +20,30 @@ DEM_INLINE wide cube_root(wide x)
     return root;
 }
 
-/// k of a contact; `pull`: 2 pi w [N/m], `modulus`: E* [Pa], `reduced`: R* [m].
-DEM_INLINE wide jkr_softness(wide pull, wide modulus, wide reduced)
-{
-    return wide_sqrt(pull / wide_max(modulus * reduced, wide_all(1e-300)));
-}
+/// What a contact's surfaces make of it, whatever the overlap.
+typedef struct jkr_pair {
+    wide modulus, reduced;  ///< E* [Pa], R* [m]
+    wide softness;          ///< k
+    wide least, end;        ///< s where they part, and the overlap there [R*]
+} jkr_pair;
 
-/// The s at which they part, and its overlap.
-DEM_INLINE wide jkr_parting(wide k, wide *overlap)
+/// `pull`: 2 pi w [N/m].
+DEM_INLINE jkr_pair jkr_surfaces(wide pull, wide modulus, wide reduced)
 {
-    wide s = cube_root(wide_all(0.25) * k);
-    *overlap = wide_all(-0.75) * k * s;
-    return s;
+    wide k = wide_sqrt(pull / wide_max(modulus * reduced, wide_all(1e-300))), s = cube_root(wide_all(0.25) * k);
+    return (jkr_pair){modulus, reduced, k, s, wide_all(-0.75) * k * s};
 }
 
 /// The largest s of s^4 - k s = `overlap` by Newton's method, which falls to it from above; where they have parted, the s
 /// at which they did.
-DEM_INLINE wide jkr_stretch(wide k, wide overlap)
+DEM_INLINE wide jkr_stretch(const jkr_pair *p, wide overlap)
 {
     enum { MOST = 60 };
-    wide zero = wide_all(0), end, least = jkr_parting(k, &end);
+    wide zero = wide_all(0), k = p->softness;
     // k^(1/3) and a little more
-    wide s = wide_fma(wide_all(1.5874027), least, wide_sqrt(wide_sqrt(wide_max(overlap, zero))));
-    wide_mask holds = wide_less(end, overlap);
-    s = wide_select(holds, s, least);
+    wide s = wide_fma(wide_all(1.5874027), p->least, wide_sqrt(wide_sqrt(wide_max(overlap, zero))));
+    wide_mask holds = wide_less(p->end, overlap);
+    s = wide_select(holds, s, p->least);
     for (int i = 0; i < MOST; i++) {
         wide cube = s * s * s, slope = wide_fms(wide_all(4), cube, k);
         wide next = s - (s * (cube - k) - overlap) / slope;
@@ -63,10 +63,11 @@ typedef struct jkr_law {
     wide spread;  ///< da / d(overlap) [-]
 } jkr_law;
 
-DEM_INLINE jkr_law jkr(wide k, wide modulus, wide reduced, wide s)
+DEM_INLINE jkr_law jkr(const jkr_pair *p, wide s)
 {
+    wide k = p->softness, reduced = p->reduced;
     wide square = s * s, cube = square * s, k_cube = k * cube, fourth = square * square;
-    wide scale = modulus * (reduced * reduced);
+    wide scale = p->modulus * (reduced * reduced);
     wide energy =
         wide_fma(wide_all(8.0 / 15), cube * cube, wide_fma(wide_all(-4.0 / 3), k_cube, wide_all(0.5) * k * k));
     return (jkr_law){scale * wide_fma(wide_all(4.0 / 3), cube * cube, wide_all(-2) * k_cube),

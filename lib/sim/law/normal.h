@@ -23,8 +23,8 @@ DEM_INLINE wide reduced_radius(wide a, wide b)
 }
 
 /// Elastic part. `reduced` R* [m] (Hertz), `area_length` A / (pi L) = R_min^2 / (R_i + R_j) [m] (young).
-DEM_INLINE normal_law normal_elastic(const dem_features f, const wide *law, wide overlap, wide reduced,
-                                     wide area_length)
+DEM_INLINE normal_law normal_elastic(const dem_features f, const wide *law, const jkr_pair *surfaces, wide overlap,
+                                     wide reduced, wide area_length)
 {
     wide zero = wide_all(0);
     normal_law n = {zero, zero, zero, zero, zero, zero, zero};
@@ -35,9 +35,8 @@ DEM_INLINE normal_law normal_elastic(const dem_features f, const wide *law, wide
         n.elastic = n.stiffness * overlap;
     }
     if (f.jkr) {
-        wide half = wide_all(0.5), modulus = half * law[LAW_HERTZ], k = jkr_softness(law[LAW_JKR], modulus, reduced);
-        jkr_law j = jkr(k, modulus, reduced, jkr_stretch(k, overlap / reduced));
-        n.energy = wide_fma(half * overlap, n.elastic, j.energy);
+        jkr_law j = jkr(surfaces, jkr_stretch(surfaces, overlap / reduced));
+        n.energy = wide_fma(wide_all(0.5) * overlap, n.elastic, j.energy);
         n.elastic = n.elastic + j.force;
         // an upper bound of the tangent
         n.stiffness = n.stiffness + law[LAW_HERTZ] * j.radius;
