@@ -226,8 +226,11 @@ static void put_shapes(dem_json_writer *w, const dem_scene *scene)
             put_spheres(w, shape->clump,
                         shape->material < scene->material_count ? scene->materials[shape->material].density : NAN);
         else {
-            dem_json_open_object(w, "sphere");
+            bool disc = shape->disc_thickness > 0;
+            dem_json_open_object(w, disc ? "disc" : "sphere");
             dem_json_put_number(w, "radius", shape->sphere_radius);
+            if (disc)
+                dem_json_put_number(w, "thickness", shape->disc_thickness);
             dem_json_close(w, '}');
         }
         dem_json_close(w, '}');

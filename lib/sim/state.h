@@ -272,8 +272,8 @@ static inline uint32_t body_hold(const dem_bodies *b, size_t row)
 /// The mass itself, also of a body that others see without end of it [kg].
 static inline double body_mass(const dem_world *w, size_t row)
 {
-    double scale = body_scale(&w->bodies, row), cube = scale * scale * scale;
-    return w->templates.items[w->bodies.shape[row]].mass * cube;
+    const dem_template *t = &w->templates.items[w->bodies.shape[row]];
+    return t->mass * template_bulk(t, body_scale(&w->bodies, row));
 }
 
 #endif

@@ -115,6 +115,7 @@ typedef struct dem_shape_def {
     const char *clump_file;  ///< resolved path; NULL: none
     const dem_clump *clump;  ///< also what was read from `clump_file`
     double sphere_radius;    ///< [m]; 0: not a sphere
+    double disc_thickness;   ///< 0, or the sphere is a disc of two dimensions: m = rho pi r^2 t, I = m r^2 / 2 [m]
     uint32_t material;
 } dem_shape_def;
 
