@@ -384,8 +384,6 @@ static void what_is_not_built_is_never_ignored(void **state)
          "domain.leaving: 'delete' is not built yet (column 23); leave it out"},
         {S "'inlets': {'a': {}}}", 2, "~this is not built yet"},
         {S "'inlets': [1]}", 2, "~is not built yet"},
-        {S "'bonds': {'a': {}}}", 2, "~is not built yet"},
-        {S "'bonds': 5}", 2, "~is not built yet"},
         {S "'damping': {'drag': {}}}", 2, "~is not built yet"},
         {S "'dimension': 4}", 2, "dimension: must be at least 2 and at most 3, not 4 (column 14); correct it"},
         {S "'dimension': '2D'}", 2, "~needs a whole number"},
