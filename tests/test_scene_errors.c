@@ -250,6 +250,26 @@ static void materials_that_can_meet_need_a_law(void **state)
     dem_scene_release(&s);
 }
 
+static void soft_contacts_refuse_what_they_do_not_have(void **state)
+{
+    (void)state;
+#define SOFT_WITH(law)                                                                                                 \
+    S "'materials': {'a': {'density': 1, 'young': 1e9, 'poisson': 0.2}},\n'contacts': [{'between': ['a', 'a'], " law   \
+      "}],\n'contacts_between_clumps': 'soft'}"
+    static const refusal cases[] = {
+        {SOFT_WITH("'normal': {'stiffness': 1}, 'rolling': {'law': 'bounded', 'coefficient': 0.1}"), 4,
+         "contacts_between_clumps: is 'soft', which does not go with the rolling resistance of contacts 0 (column 28); "
+         "take 'sum', or leave that out"},
+        {SOFT_WITH("'normal': {'law': 'jkr', 'work_of_adhesion': 1}"), 4, "~does not go with the adhesion"},
+        {SOFT_WITH("'normal': {'stiffness': 1}, 'cohesion': {'law': 'sjkr', 'energy_density': 1}"), 4, "~the cohesion"},
+        {S "'soft': {'tau': 1e-6}}", 2,
+         "soft: is of contacts_between_clumps 'soft', which is not set (column 9); set it, or leave this out"},
+        {S "'contacts_between_clumps': 'soft', 'soft': {'tau': 0}}", 2, "~must be above 0"},
+        {S "'contacts_between_clumps': 'soft', 'soft': {'tau': 'big'}}", 2, "~tau"},
+    };
+    CHECK_REFUSALS(cases);
+}
+
 static void wrong_shapes_are_refused(void **state)
 {
     (void)state;
@@ -257,7 +277,7 @@ static void wrong_shapes_are_refused(void **state)
     static const refusal cases[] = {
         {SHAPE("'sphere': {'radius': 1}"), 2, "shapes.s: 'material' is missing (column 62); add it"},
         {SHAPE("'material': 'c', 'sphere': {'radius': 1}"), 3, "~unknown material 'c'"},
-        {SHAPE("'material': 'a'"), 2, "~needs one of 'clump', 'sphere' and 'spheres'"},
+        {SHAPE("'material': 'a'"), 2, "~needs one of 'clump', 'sphere', 'disc' and 'spheres'"},
         {SHAPE("'material': 'a', 'sphere': {'radius': 1}, 'spheres': [[0, 0, 0, 1]]"), 2, "~has more than one of"},
         {SHAPE("'material': 'a', 'sphere': {}"), 3, "~needs 'radius' or 'diameter'"},
         {SHAPE("'material': 'a', 'sphere': {'radius': 1, 'diameter': 2}"), 3, "~has both 'radius' and 'diameter'"},
@@ -362,16 +382,37 @@ static void wrong_walls_are_refused(void **state)
          "~use one of: inside, outside"},
         {WALL("'cone': {}"), 7, "~this is not built yet"},
         {WALL("'sphere': {}"), 7, "~is not built yet"},
-        {WALL(PLANE ", 'servo': {}"), 7, "~is not built yet"},
+        {WALL(PLANE ", 'servo': {}"), 7, "~'max_velocity' is missing"},
         {WALL(PLANE ", 'wear': {}"), 7, "~is not built yet"},
-        {WALL(PLANE ", 'motion': {'oscillate': {}}"), 7, "~is not built yet"},
-        {WALL(PLANE ", 'motion': {'table': 'x.csv'}"), 7, "~is not built yet"},
+        {WALL(PLANE ", 'motion': {'oscillate': {}}"), 7, "~'frequency' is missing"},
+        {WALL(PLANE ", 'motion': {'table': 'x.csv'}"), 7, "~files are not read here"},
         {WALL(PLANE ", 'motion': {'translate': {}}"), 7, "~'velocity' is missing"},
         {WALL(PLANE ", 'motion': {'rotate': {'axis': [0, 0, 1]}}"), 7, "~'rate' is missing"},
         {IN_HEAD("'walls': {'w.x-': {'material': 'rock', " PLANE
                  "},\n'w': {'material': 'rock', 'box': {'min': [0, 0, 0],"
                  " 'max': [1, 1, 1]}}}"),
          8, "~there is a wall 'w.x-' already"},
+    };
+    CHECK_REFUSALS(cases);
+}
+
+static void wrong_bonds_are_refused(void **state)
+{
+    (void)state;
+#define BOND(members) IN_HEAD("'bonds': {'b': {'young': 1e9, " members "}}")
+    static const refusal cases[] = {
+        {S "'bonds': 5}", 2, "~needs an object of bonds by name"},
+        {S "'bonds': {'a': {}}}", 2, "~'young' is missing"},
+        {BOND("'between': 'some'"), 7, "~write 'all'"},
+        {BOND("'between': ['rock']"), 7, "~needs a list of 2"},
+        {BOND("'between': ['rock', 'balll']"), 7, "~unknown group or shape 'rock'"},
+        {BOND("'tensile_strength': -1"), 7, "~must be above 0"},
+        {BOND("'moment_contribution': 2"), 7, "~must be at least 0 and at most 1"},
+        {BOND("'damping': -0.1"), 7, "~must be at least 0"},
+        {BOND("'contact': 'beside'"), 7, "~unknown contact 'beside'"},
+        {BOND("'gap': '1 MPa'"), 7, "~gap"},
+        {BOND("'radius_multiplier': 0"), 7, "~must be above 0"},
+        {BOND("'strength': 1"), 7, "~unknown key 'strength'"},
     };
     CHECK_REFUSALS(cases);
 }
@@ -384,11 +425,19 @@ static void what_is_not_built_is_never_ignored(void **state)
          "domain.leaving: 'delete' is not built yet (column 23); leave it out"},
         {S "'inlets': {'a': {}}}", 2, "~this is not built yet"},
         {S "'inlets': [1]}", 2, "~is not built yet"},
-        {S "'damping': {'drag': {}}}", 2, "~is not built yet"},
+        {S "'damping': {'drag': {}}}", 2, "~'density' is missing"},
+        {S "'damping': {'drag': {'density': 1, 'viscosity': -1}}}", 2, "~must be at least 0"},
+        {S "'damping': {'drag': {'density': 1, 'viscosity': '1 Pa'}}}", 2, "~viscosity"},
+        {S "'materials': {'a': {'density': 1}}, 'shapes': {'d': {'material': 'a',\n'disc': {'radius': 1}}}}", 3,
+         "shapes.d.disc: there are no discs in three dimensions (column 9); add 'dimension': 2 to the scene, or write "
+         "'sphere'"},
+        {S "'dimension': 2, 'materials': {'a': {}}, 'shapes': {'d': {'material': 'a',\n'disc': {'radius': 1}}}}", 3,
+         "~needs 'density' of 'a'"},
+        {S "'dimension': 2, 'materials': {'a': {}}, 'shapes': {'d': {'material': 'a',\n'disc': {}}}}", 3,
+         "~needs 'radius' or 'diameter'"},
         {S "'dimension': 4}", 2, "dimension: must be at least 2 and at most 3, not 4 (column 14); correct it"},
         {S "'dimension': '2D'}", 2, "~needs a whole number"},
         {S "'integrator': {'rotation': 'lsim'}}", 2, "unknown rotation 'lsim' (column 28); did you mean 'lsym'?"},
-        {S "'contacts_between_clumps': 'soft'}", 2, "~is not built yet"},
     };
     CHECK_REFUSALS(cases);
 }
@@ -416,9 +465,11 @@ int main(void)
         cmocka_unit_test(numbers_out_of_range_are_refused),
         cmocka_unit_test(wrong_laws_are_refused),
         cmocka_unit_test(materials_that_can_meet_need_a_law),
+        cmocka_unit_test(soft_contacts_refuse_what_they_do_not_have),
         cmocka_unit_test(wrong_shapes_are_refused),
         cmocka_unit_test(wrong_bodies_are_refused),
         cmocka_unit_test(wrong_walls_are_refused),
+        cmocka_unit_test(wrong_bonds_are_refused),
         cmocka_unit_test(what_is_not_built_is_never_ignored),
         cmocka_unit_test(text_that_is_no_json_is_refused_by_its_line),
     };

@@ -2,6 +2,7 @@
 #include <string.h>
 
 #include "cli.h"
+#include "study_mohr.h"
 #include "study_verify.h"
 
 // what stands before the options and has options of its own
@@ -9,7 +10,7 @@ typedef struct subcommand {
     const char *name;
     int (*run)(int argc, char **argv);
 } subcommand;
-static const subcommand subcommands[] = {{"verify", study_verify}};
+static const subcommand subcommands[] = {{"verify", study_verify}, {"mohr-coulomb", study_mohr_coulomb}};
 
 static int no_study(const cli_tool *tool, const char *name)
 {
@@ -28,15 +29,17 @@ int main(int argc, char **argv)
             return subcommands[i].run(argc - 1, argv + 1);
     static const char about[] =
         "Studies of what can be relied on. Each is a word with options of its own: verify compares what the engine "
-        "computes with what is known.";
+        "computes with what is known; mohr-coulomb fits friction angle and cohesion to the strengths of tests.";
     static const char epilogue[] =
         "Examples:\n"
         "  dem-study verify                 cases with a known answer\n"
+        "  dem-study mohr-coulomb tests.csv friction angle and cohesion\n"
         "  dem-study verify --help          how to choose them, and where the table can go\n"
         "Exit status: 0 done, 1 a study found a failure, 2 wrong usage, 3 bad input, 4 cannot write, 130 interrupted.";
     cli_common common = CLI_COMMON_DEFAULTS;
     const cli_option options[] = {CLI_COMMON_OPTIONS(common)};
-    const cli_tool tool = {"dem-study", "verify [options]", about, options, sizeof options / sizeof *options, epilogue};
+    const cli_tool tool = {"dem-study", "verify|mohr-coulomb [options]",  about,
+                           options,     sizeof options / sizeof *options, epilogue};
     cli_texts words = {0};
     int status;
     if (cli_parse(&tool, argc, argv, &words, &status) == CLI_GO)

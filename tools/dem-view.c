@@ -19,6 +19,7 @@ static const char epilogue[] =
     "Examples:\n"
     "  dem-view out/ -o last.png\n"
     "  dem-view out/ -o fast.png --colour speed --range \"0..0.5 m/s\" --clip \"x<7mm\" --time 0.05\n"
+    "  dem-view out/ -o chains.png --contacts    # which grains bear the load\n"
     "  dem-view out/ -o frames/%04d.png --frames all --colour velocity:z\n"
     "  dem-view grain.json -o grain.png           # its surface and its spheres, side by side\n"
     "  dem-view clumps/ -o sheet.png              # every clump of a folder, with its name\n"
@@ -65,7 +66,8 @@ static void report_picture(report *r, const char *path, const view_run *run, con
     if (run) {
         if (isfinite(run->options.time))
             dem_quantity_text(run->options.time, "s", run->options.time, time);
-        dem_buffer_print(&r->text, "%zu bodies%s%s", run->shown, *time ? " at t = " : "", time);
+        dem_buffer_print(&r->text, "%zu %s%s%s", run->shown, run->choices->arguments->contacts ? "contacts" : "bodies",
+                         *time ? " at t = " : "", time);
         if (valued)
             dem_buffer_print(&r->text, ", %s from %s to %s", run->field.title,
                              dem_quantity_text(low, run->field.unit, fmax(fabs(low), fabs(high)), low_text),
@@ -360,6 +362,11 @@ static dem_status check_use(const view_arguments *a, const view_inputs *all, dem
         return dem_fail(
             error, DEM_USAGE,
             "--colour, --range, --clip and --bodies are for runs; clumps and meshes have nothing to choose");
+    if (a->contacts && runs < all->count)
+        return dem_fail(error, DEM_USAGE, "--contacts are those of a run; name its directory");
+    if (a->contacts && (a->colour || a->clips.count || a->bodies))
+        return dem_fail(error, DEM_USAGE, "--contacts are coloured by their force and drawn all; leave --colour, --clip "
+                                          "and --bodies out");
     if (a->orthographic && a->perspective)
         return dem_fail(error, DEM_USAGE, "--orthographic or --perspective; give one of them");
     return DEM_OK;
@@ -430,6 +437,8 @@ int main(int argc, char **argv)
         {"spheres", 0, CLI_FLAG, NULL, "the spheres of clumps, not the surfaces of their grains", &a.spheres, 0, 0},
         {"surface", 0, CLI_FLAG, NULL, "of a clump file only the surface it keeps (default: both, side by side)",
          &a.surface, 0, 0},
+        {"contacts", 0, CLI_FLAG, NULL,
+         "the forces of contacts as rods, instead of bodies (needs output.contacts in the scene)", &a.contacts, 0, 0},
         {"clip", 0, CLI_TEXTS, "COND", "leave out the bodies for which it holds: \"x<5mm\", \"speed>1m/s\"; repeatable",
          &a.clips, 0, 0},
         {"bodies", 0, CLI_TEXT, "LIST", "only these, by number: 0-99,200,300-", &a.bodies, 0, 0},

@@ -4,6 +4,7 @@
 
 #include "cli.h"
 #include "out/field.h"
+#include "out/links.h"
 #include "out/picture.h"
 #include "out/results.h"
 #include "out/scene_picture.h"
@@ -19,7 +20,7 @@ typedef struct view_arguments {
     double label_size;
     const char *colour, *range, *bodies, *unit;
     int map;
-    bool spheres, surface, no_walls;
+    bool spheres, surface, no_walls, contacts;
     cli_texts clips;
     double azimuth, elevation;  ///< NAN: not given
     double zoom;
@@ -72,7 +73,8 @@ typedef struct view_run {
     dem_field field;
     unsigned char *hidden;
     const char **names;
-    size_t shown;  ///< bodies that are not hidden
+    dem_links links;  ///< what is drawn instead of the bodies, where the arguments ask for contacts
+    size_t shown;     ///< bodies that are not hidden, or contacts
 } view_run;
 
 enum { VIEW_LAST = -1 };

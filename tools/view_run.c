@@ -1,4 +1,5 @@
 // Runs: their frames, colours and what is left out.
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -97,6 +98,24 @@ static dem_status choose_colours(view_run *run, dem_error *error)
     return view_range(a->range, run->field.unit, &o->low, &o->high, error);
 }
 
+// the contacts of the time of the bodies, coloured by their force
+static dem_status choose_contacts(view_run *run, dem_error *error)
+{
+    const view_arguments *a = run->choices->arguments;
+    dem_picture_options *o = &run->options;
+    DEM_TRY(dem_links_read(run->results.directory, run->results.time, &run->links, error));
+    run->field.unit = "N";
+    snprintf(run->field.title, sizeof run->field.title, "force");
+    o->time = run->links.time;
+    o->colour = DEM_PICTURE_VALUES;
+    o->values = run->links.force;
+    o->title = run->field.title;
+    o->unit = run->field.unit;
+    o->hidden = NULL;
+    run->shown = run->links.bodies.count;
+    return view_range(a->range, run->field.unit, &o->low, &o->high, error);
+}
+
 static dem_status choose_bodies(view_run *run, dem_error *error)
 {
     const view_arguments *a = run->choices->arguments;
@@ -138,30 +157,46 @@ dem_status view_run_load(view_run *run, long frame, const char *file, dem_error 
         DEM_TRY(dem_results_frame(r, (size_t)frame, error));
     run->options.time = r->time;
     run->options.poses = run->options.walls ? r->walls : NULL;
+    if (run->choices->arguments->contacts)
+        return choose_contacts(run, error);
     DEM_TRY(choose_colours(run, error));
     return choose_bodies(run, error);
 }
 
-dem_status view_run_measure(view_run *run, dem_picture_span *span, dem_error *error)
+// what is drawn: the bodies, or their contacts
+typedef struct subject {
+    const dem_body_view *bodies;
+    const dem_clump *const *shapes;
+    size_t shape_count;
+} subject;
+
+static subject subject_of(const view_run *run)
 {
     const dem_results *r = &run->results;
-    return dem_scene_picture_measure(&r->bodies, (const dem_clump *const *)r->clumps, r->scene.shape_count,
-                                     &run->options, span, error);
+    if (run->choices->arguments->contacts)
+        return (subject){&run->links.bodies, (const dem_clump *const *)run->links.shapes, DEM_LINK_SHAPES};
+    return (subject){&r->bodies, (const dem_clump *const *)r->clumps, r->scene.shape_count};
+}
+
+dem_status view_run_measure(view_run *run, dem_picture_span *span, dem_error *error)
+{
+    subject s = subject_of(run);
+    return dem_scene_picture_measure(s.bodies, s.shapes, s.shape_count, &run->options, span, error);
 }
 
 dem_status view_run_draw(const dem_ctx *ctx, view_run *run, const dem_picture_span *span, int width, int height,
                          dem_image *image, dem_error *error)
 {
-    const dem_results *r = &run->results;
+    subject s = subject_of(run);
     run->options.width = width;
     run->options.height = height;
-    return dem_scene_picture_render(ctx, &r->bodies, (const dem_clump *const *)r->clumps, r->scene.shape_count,
-                                    &run->options, span, image, NULL, error);
+    return dem_scene_picture_render(ctx, s.bodies, s.shapes, s.shape_count, &run->options, span, image, NULL, error);
 }
 
 void view_run_release(view_run *run)
 {
     forget(run);
+    dem_links_release(&run->links);
     free(run->names);
     dem_results_release(&run->results);
 }

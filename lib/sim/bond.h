@@ -3,8 +3,8 @@
 ///
 /// Formulation: total, from a potential, so that nothing drifts however far the bodies have turned, and forces do no
 /// work on a closed path. At creation each body gets the bond's point (`anchor`) and its frame (`frame`, x along the
-/// bond) in its own axes. Later the two frames differ by a turn phi; the frame half way between them (m) does not prefer
-/// either body. With u the way from a's anchor to b's, seen in m,
+/// bond) in its own axes. Later the two frames differ by a turn phi; the frame half way between them (m) does not
+/// prefer either body. With u the way from a's anchor to b's, seen in m,
 ///   E = 1/2 (k_n u_x^2 + k_s (u_y^2 + u_z^2) + k_t phi_x^2 + k_b (phi_y^2 + phi_z^2)).
 /// With d = (w, s) the quaternion of phi, x = |phi| / 2 and k = x / sin x = phi / (2 |s|), the gradient is
 ///   force on a     F  = m (dE/du)

@@ -26,7 +26,8 @@ static dem_vec3 shift_of(const dem_world *w, const dem_bond *bond)
     for (int k = 0; w->periodic && k < 3; k++)
         if (w->domain.periodic[k]) {
             const int32_t *wraps = w->bodies.wraps;
-            int32_t n = bond->sides[k] + wraps[3 * (size_t)bond->b + (size_t)k] - wraps[3 * (size_t)bond->a + (size_t)k];
+            int32_t n =
+                bond->sides[k] + wraps[3 * (size_t)bond->b + (size_t)k] - wraps[3 * (size_t)bond->a + (size_t)k];
             v3_set(&shift, k, n * (v3_get(w->domain.high, k) - v3_get(w->domain.low, k)));
         }
     return shift;
@@ -375,8 +376,7 @@ static void view_bond(dem_world *w, const dem_bond *bond, const dem_bond_load *l
         .broken = broken ? bond->time : NAN,
         .broken_step = bond->step,
     };
-    view->stress_ratio =
-        larger(view->tensile_stress / def->tensile_strength, view->shear_stress / def->shear_strength);
+    view->stress_ratio = larger(view->tensile_stress / def->tensile_strength, view->shear_stress / def->shear_strength);
     if (broken)
         return;
     view->force = v3_add(load->force, load->drag_force);

@@ -10,17 +10,17 @@
 #include "sim/state.h"
 
 typedef struct dem_bond {
-    uint32_t a, b;                 ///< rows of the bodies, a < b
-    uint32_t sphere_a, sphere_b;   ///< rows of the spheres
-    int32_t sides[3];              ///< periodic sides between them, for bodies that were never put back
-    uint32_t def, state, unused;   ///< dem_bond_state
-    double anchor_a[3], anchor_b[3];  ///< the bond's ends in the bodies' run frames [m]
-    double frame_a[4], frame_b[4];    ///< its frame in theirs, x from a to b
-    double stiffness[BOND_WAYS];      ///< [N/m], [N m/rad]
-    double damping[BOND_WAYS];        ///< [N s/m], [N m s/rad]
-    double radius;                    ///< of the disc [m]
-    double drag[6];                   ///< impulse of the dashpots on a in the last step [N s], [N m s]
-    double viscous, broken;           ///< dissipated so far; let go by the breakage [J]
+    uint32_t a, b;                     ///< rows of the bodies, a < b
+    uint32_t sphere_a, sphere_b;       ///< rows of the spheres
+    int32_t sides[3];                  ///< periodic sides between them, for bodies that were never put back
+    uint32_t def, state, unused;       ///< dem_bond_state
+    double anchor_a[3], anchor_b[3];   ///< the bond's ends in the bodies' run frames [m]
+    double frame_a[4], frame_b[4];     ///< its frame in theirs, x from a to b
+    double stiffness[BOND_WAYS];       ///< [N/m], [N m/rad]
+    double damping[BOND_WAYS];         ///< [N s/m], [N m s/rad]
+    double radius;                     ///< of the disc [m]
+    double drag[6];                    ///< impulse of the dashpots on a in the last step [N s], [N m s]
+    double viscous, broken;            ///< dissipated so far; let go by the breakage [J]
     double time, point[3], stress[2];  ///< of the breakage [s], [m], [Pa]
     uint64_t step;
 } dem_bond;
@@ -84,8 +84,8 @@ size_t dem_bonds_mask(const dem_world *world, const dem_pair *pair, uint32_t *sp
 void dem_bonds_compute(dem_world *world, size_t begin, size_t end, double kick, size_t part);
 void dem_bonds_add(dem_world *world, size_t begin, size_t end);
 
-/// After a step in which some broke: takes them out and asks for the contacts they stood for; and once these are listed,
-/// tells the ledger what energy came with them.
+/// After a step in which some broke: takes them out and asks for the contacts they stood for; and once these are
+/// listed, tells the ledger what energy came with them.
 dem_status dem_bonds_settle(dem_world *world, dem_error *error);
 void dem_bonds_account(dem_world *world);
 

@@ -74,12 +74,17 @@ dem_status dem_bonds_create(dem_world *w, const dem_scene *scene, const dem_body
     for (size_t i = 0; i < scene->bond_count; i++) {
         const char *fault = fault_of(&scene->bonds[i]);
         if (fault)
-            return dem_fail(error, DEM_BAD_INPUT, "bonds \"%.60s\" %s", scene->bonds[i].name ? scene->bonds[i].name : "",
-                            fault);
+            return dem_fail(error, DEM_BAD_INPUT, "bonds \"%.60s\" %s",
+                            scene->bonds[i].name ? scene->bonds[i].name : "", fault);
     }
     dem_bonds *b = w->bonds = dem_alloc_zero(1, sizeof *b);
     if (!b || !copy_defs(b, scene) || !set_members(w, scene, defs))
         return dem_fail_memory(error);
+    if (b->instead && w->features.soft)
+        return dem_fail(
+            error, DEM_BAD_INPUT,
+            "bonds cannot stand for contacts that are \"soft\", which are of whole bodies; write \"contact\": "
+            "\"parallel\", or other contacts_between_clumps");
     b->part_broke = dem_alloc_zero((size_t)w->threads, sizeof *b->part_broke);
     set_due(b);
     double radius = 0;
@@ -219,8 +224,7 @@ static bool is_bonded(const dem_bonds *b, size_t old, const dem_bond *bond)
     for (; low < old && b->items[low].a == bond->a && b->items[low].b == bond->b &&
            b->items[low].sphere_a == bond->sphere_a && b->items[low].sphere_b == bond->sphere_b;
          low++)
-        if (memcmp(b->items[low].sides, bond->sides, sizeof bond->sides) == 0 &&
-            b->items[low].state == DEM_BOND_INTACT)
+        if (memcmp(b->items[low].sides, bond->sides, sizeof bond->sides) == 0 && b->items[low].state == DEM_BOND_INTACT)
             return true;
     return false;
 }
@@ -312,10 +316,11 @@ dem_status dem_bonds_make(dem_world *w, dem_error *error)
         for (size_t i = old; due && i < b->count; i++)
             some |= b->items[i].def == d;
         if (due && !some)
-            dem_log(w->ctx, DEM_LOG_WARNING,
-                    "bonds \"%s\" join nothing: no two spheres of these bodies are nearer than %.3g m; raise \"gap\", or "
-                    "look at \"between\"",
-                    b->defs[d].name, b->defs[d].gap);
+            dem_log(
+                w->ctx, DEM_LOG_WARNING,
+                "bonds \"%s\" join nothing: no two spheres of these bodies are nearer than %.3g m; raise \"gap\", or "
+                "look at \"between\"",
+                b->defs[d].name, b->defs[d].gap);
         b->made[d] |= due;
     }
     set_due(b);

@@ -64,7 +64,7 @@ dem_status dem_broad_images(dem_world *w, dem_error *error)
         largest = larger(largest, w->bodies.radius[i]);
     for (int k = 0; k < 3; k++) {
         side[k] = w->domain.periodic[k] ? v3_get(w->domain.high, k) - v3_get(w->domain.low, k) : 0;
-        if (w->domain.periodic[k] && side[k] * (DEM_IMAGES_ASIDE - 1) < 2 * largest + w->skin)
+        if (w->domain.periodic[k] && side[k] * (DEM_IMAGES_ASIDE - 1) < 2 * largest + w->skin + w->ahead)
             return dem_fail(error, DEM_BAD_INPUT,
                             "the domain is periodic over %g m, too short for a body of %g m; make that side longer",
                             side[k], 2 * largest);
@@ -186,7 +186,7 @@ static void sort_by_size(search *s, size_t counts[LEVELS])
             rank[k] = s->level_count;
             counts[s->level_count] = sizes[k];
             level *l = &s->levels[s->level_count++];
-            l->cell = 2 * largest[k] + s->w->skin + s->pad;
+            l->cell = 2 * largest[k] + s->w->skin + s->w->ahead + s->pad;
             l->radius = largest[k];
         }
     for (size_t i = 0; i < b->count; i++)
@@ -301,7 +301,7 @@ static bool look_from_image(search *s, uint32_t i, const int image[3])
     if (!own)
         x = v3_add(x, v3(s->w->shifts[4 * away], s->w->shifts[4 * away + 1], s->w->shifts[4 * away + 2]));
     for (int k = s->level_of[i]; k < s->level_count; k++) {
-        size_t count = look_around(s, &s->levels[k], x, b->radius[i] + s->w->skin);
+        size_t count = look_around(s, &s->levels[k], x, b->radius[i] + s->w->skin + s->w->ahead);
         for (size_t j = 0; j < count; j++) {
             uint32_t other = s->found[j];
             if (k == s->level_of[i] && (other < i || (other == i && !first_half)))
@@ -318,7 +318,7 @@ static bool look_from_image(search *s, uint32_t i, const int image[3])
 static bool look_from(search *s, uint32_t i)
 {
     const dem_domain_def *domain = &s->w->domain;
-    double reach = s->w->bodies.radius[i] + s->levels[s->level_count - 1].radius + s->w->skin;
+    double reach = s->w->bodies.radius[i] + s->levels[s->level_count - 1].radius + s->w->skin + s->w->ahead;
     int low[3] = {0}, high[3] = {0};
     for (int k = 0; k < 3; k++)
         if (domain->periodic[k]) {

@@ -114,6 +114,7 @@ size_t dem_contact_bytes(const dem_features *f, int form)
 dem_contact_history dem_history_get(const dem_contact_columns *c, size_t at)
 {
     dem_contact_history h = {.twist = c->twist ? c->twist[at] : 0,
+                             .patch = c->patch ? c->patch[at] : 0,
                              .bond = c->bond ? c->bond[at] : 0,
                              .attached = c->attached ? c->attached[at] : 0,
                              .loss = c->loss ? c->loss[at] : 0};
@@ -140,6 +141,8 @@ void dem_history_put(const dem_contact_columns *c, size_t at, const dem_contact_
     }
     if (c->twist)
         c->twist[at] = h->twist;
+    if (c->patch)
+        c->patch[at] = h->patch;
     if (c->bond)
         c->bond[at] = h->bond;
     if (c->attached)

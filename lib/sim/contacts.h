@@ -27,13 +27,18 @@
     X(double, roll[0], "rad", f->rolling, "angle of the rolling spring, x")                                            \
     X(double, roll[1], "rad", f->rolling, "angle of the rolling spring, y")                                            \
     X(double, roll[2], "rad", f->rolling, "angle of the rolling spring, z")                                            \
-    X(double, twist, "rad", f->twisting, "angle of the twisting spring")                                               \
+    X(double, twist, "rad", f->twisting || (f->soft && f->friction), "angle of the twisting spring")                   \
+    X(double, patch, "N m/rad", f->soft && f->friction, "stiffness of the twisting spring in the last step")           \
     X(double, bond, "-", f->bonded, "whether the surfaces are bonded, or were")                                        \
-    X(double, attached, "-", f->jkr, "whether the surfaces hold on to each other")                                     \
+    X(double, attached, "-", f->jkr || f->soft, "whether it remembers: surfaces hold on, the patch touches")           \
     X(double, drag[0], "N m", f->ledger && features_turning(*f), "moment not of springs in the last step, x")          \
     X(double, drag[1], "N m", f->ledger && features_turning(*f), "moment not of springs, y")                           \
     X(double, drag[2], "N m", f->ledger && features_turning(*f), "moment not of springs, z")                           \
     X(double, loss, "N", f->ledger && (f->rate || f->restitution), "damped force of the last step")                    \
+    X(double, reaction[0], "N", f->reaction && walls, "force of the wall, x")                                          \
+    X(double, reaction[1], "N", f->reaction && walls, "force of the wall, y")                                          \
+    X(double, reaction[2], "N", f->reaction && walls, "force of the wall, z")                                          \
+    X(double, hardness, "N/m", f->reaction && walls, "stiffness and dashpot over the step")                            \
     X(double, weight, "-", f->weighted, "share of the force that counts")                                              \
     X(double, geometry[0], "-", mesh, "normal, x")                                                                     \
     X(double, geometry[1], "-", mesh, "normal, y")                                                                     \
@@ -65,7 +70,7 @@ size_t dem_contact_bytes(const dem_features *features, int form);
 
 /// What a contact remembers.
 typedef struct dem_contact_history {
-    double spring[3], dash[3], roll[3], twist, bond, attached, drag[3], loss;
+    double spring[3], dash[3], roll[3], twist, patch, bond, attached, drag[3], loss;
 } dem_contact_history;
 
 dem_contact_history dem_history_get(const dem_contact_columns *columns, size_t place);

@@ -4,6 +4,7 @@
 #include "sim/broad.h"
 #include "sim/contacts.h"
 #include "sim/refresh.h"
+#include "sim/servo.h"
 #include "sim/wall_lists.h"
 
 static bool finite_body(const dem_bodies *b, size_t row)
@@ -59,7 +60,8 @@ static void bound_walls(dem_world *w)
         radius = larger(radius, w->bodies.radius[i]);
     }
     dem_vec3 centre = v3_scale(v3_add(box.low, box.high), 0.5);
-    w->sweep_speed = dem_walls_speed(&w->walls, centre, box_diagonal(box) / 2 + radius + w->skin);
+    w->sweep_least = dem_walls_speed(&w->walls, centre, box_diagonal(box) / 2 + radius + w->skin);
+    w->sweep_speed = w->sweep_least + dem_servo_most(&w->walls);
 }
 
 static bool search_due(const dem_world *w)
@@ -95,6 +97,8 @@ dem_status dem_lists_update(dem_world *w, dem_error *error)
     DEM_TRY(dem_refresh(w, error));
     double t2 = dem_clock();
     DEM_TRY(dem_contacts_rebuild(w, error));
+    if (w->features.soft)
+        DEM_TRY(dem_soft_reserve(w, error));
     double t3 = dem_clock();
     w->clocks[DEM_PASS_SEARCH].seconds += t1 - t0;
     w->clocks[DEM_PASS_REFRESH].seconds += t2 - t1;

@@ -6,6 +6,7 @@
 #include "base/status.h"
 #include "sim/bodies.h"
 #include "sim/bonds.h"
+#include "sim/fluid.h"
 #include "sim/motion.h"
 
 dem_status dem_views_create(dem_world *w, dem_error *error)
@@ -44,8 +45,9 @@ void dem_views_release(dem_views *v)
 // ---- evaluating
 
 // the records of one segment, in the order of its columns
-static bool evaluate(dem_world *w, const dem_contacts *contacts, const dem_segment *s, int form)
+static bool evaluate(dem_world *w, const dem_contacts *contacts, size_t segment, int form)
 {
+    const dem_segment *s = &contacts->segments[segment];
     const dem_contact_instance *any = &w->kernels->instances[w->kernels->instance_count - 1];
     dem_rows rows = world_rows(w);
     dem_tally scratch = {0};
@@ -54,7 +56,10 @@ static bool evaluate(dem_world *w, const dem_contacts *contacts, const dem_segme
             return false;
     dem_contact_job job = {contacts->columns, s->begin, s->end,          w->last_step, 0,
                            w->next_step,      &scratch, w->views.records};
-    (form < 0 ? any->pairs : any->walls[form])(w->features, &rows, &job);
+    if (w->features.soft)
+        dem_soft_records(w, segment, form, w->views.records);
+    else
+        (form < 0 ? any->pairs : any->walls[form])(w->features, &rows, &job);
     return true;
 }
 
@@ -63,7 +68,7 @@ double dem_contact_elastic(dem_world *w, uint32_t a, uint32_t b, uint32_t sphere
     const dem_segment *s = &w->contacts.segments[a / DEM_SEGMENT];
     const dem_contact_columns *c = &w->contacts.columns;
     double sum = 0;
-    if (!evaluate(w, &w->contacts, s, -1))
+    if (!evaluate(w, &w->contacts, a / DEM_SEGMENT, -1))
         return sum;
     for (size_t at = s->begin; at < s->end; at++) {
         const dem_contact_record *r = &w->views.records[at - s->begin];
@@ -80,7 +85,7 @@ static dem_status visit_segments(dem_world *w, dem_contacts *contacts, int form,
     for (size_t i = 0; i < w->segment_count; i++) {
         const dem_segment *s = &contacts->segments[i];
         size_t size = s->end - s->begin;
-        if (!evaluate(w, contacts, s, form))
+        if (!evaluate(w, contacts, i, form))
             return dem_fail_memory(error);
         for (size_t k = 0; k < size; k++) {
             size_t at = segment_place(s, k);
@@ -143,9 +148,8 @@ static void note_wall(dem_world *w, uint32_t wall, dem_vec3 force, dem_vec3 poin
 {
     dem_wall_view *view = &w->views.walls[wall];
     const dem_wall *about = &w->walls.items[wall];
-    dem_vec3 through = v3_add(about->position, quat_rotate(about->orientation, about->through));
     view->force = v3_sub(view->force, force);
-    view->moment = v3_sub(view->moment, v3_add(v3_cross(v3_sub(point, through), force), turning));
+    view->moment = v3_sub(view->moment, v3_add(v3_cross(v3_sub(point, wall_reference(about)), force), turning));
     view->contacts++;
 }
 
@@ -256,6 +260,19 @@ static void note_holding(dem_world *w, size_t i)
     v->since.work -= w->last_step / 2 * power;
 }
 
+// the drag of a fluid at the time of the positions, and what it takes in the half step up to there
+static dem_vec3 fluid_force(dem_world *w, size_t i, dem_vec3 load)
+{
+    size_t row = w->bodies.place[i];
+    const double *motion = body_pose(&w->bodies, row) + 8, *inertia = w->bodies.inertia + DEM_ROW * row;
+    double half = w->last_step / 2;
+    dem_vec3 was = v3(motion[0], motion[1], motion[2]), ahead = dem_motion_velocity(w, row, load);
+    dem_vec3 impulse = dem_fluid_impulse(w, row, ahead, half);
+    dem_vec3 now = unlocked_velocity(v3_along(ahead, inertia[0], impulse), body_hold(&w->bodies, row));
+    w->views.since.drag -= v3_dot(impulse, v3_add(was, now)) / 2;
+    return v3_scale(impulse, 1 / half);
+}
+
 static dem_vec3 unwrapped(const dem_world *w, size_t row)
 {
     dem_vec3 x = body_position(&w->bodies, row);
@@ -288,6 +305,8 @@ static void view_body(dem_world *w, size_t i)
     bool damped = w->damping.local > 0 || w->damping.viscous > 0;
     damping d;
     uint32_t hold = body_hold(&w->bodies, row);
+    if (w->bodies.fluid && w->last_step > 0 && !(hold & DEM_HOLD_VELOCITY))
+        load[0] = v3_add(load[0], fluid_force(w, i, load[0]));
     if (damped) {
         d = damping_of(w, row, weight, load);
         spare_held(hold, &d);

@@ -133,7 +133,7 @@ static bool look_at_pair(dem_world *w, dem_fresh *fresh)
     dem_candidates *c = &w->candidates[fresh->thread];
     dem_vec3 d = offset_of(w, p);
     double strides = body_stride(b, p->a, w->next_step) + body_stride(b, p->b, w->next_step);
-    double margin = dem_refresh_margin(w, p->a, p->b, strides);
+    double margin = dem_refresh_margin(w, p->a, p->b, strides) + w->ahead;
     double apart = v3_norm(d) * (1 - 1e-14) - b->radius[p->a] - b->radius[p->b];
     fresh->begin = c->count;
     fresh->count = 0;
@@ -157,6 +157,7 @@ static bool look_at_pair(dem_world *w, dem_fresh *fresh)
         fresh->count = dem_bonds_mask(w, p, c->pairs + 2 * fresh->begin, fresh->count);
         c->count = fresh->begin + fresh->count;
     }
+    fresh->slack -= w->ahead;
     fresh->changed = !same_candidates(w, p, fresh);
     if (!fresh->changed)
         c->count = fresh->begin;

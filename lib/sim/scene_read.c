@@ -10,11 +10,12 @@
 
 // ---- time
 
-static dem_status read_step(dem_scene_reader *r, const dem_scene_value *v, const dem_field *field, void *into)
+// 0: auto
+static dem_status read_or_auto(dem_scene_reader *r, const dem_scene_value *v, const dem_field *field, void *into)
 {
-    double *step = into;
+    double *value = into;
     const char *text = dem_json_string(v->json);
-    *step = 0;
+    *value = 0;
     if (text && strcmp(text, "auto") == 0)
         return DEM_OK;
     return dem_field_quantity(r, v, field, into);
@@ -23,7 +24,7 @@ static dem_status read_step(dem_scene_reader *r, const dem_scene_value *v, const
 static const dem_field time_table[] = {
     {"end", dem_field_quantity, .at = offsetof(dem_time_def, end), .dimension = DEM_DIMENSION_TIME,
      .range = DEM_RANGE_FROM_0},
-    {"step", read_step, .at = offsetof(dem_time_def, step), .dimension = DEM_DIMENSION_TIME,
+    {"step", read_or_auto, .at = offsetof(dem_time_def, step), .dimension = DEM_DIMENSION_TIME,
      .range = DEM_RANGE_POSITIVE},
     {"safety", dem_field_quantity, .at = offsetof(dem_time_def, safety), .dimension = DEM_DIMENSION_NONE,
      .range = {.high = 1, .above = true}},
@@ -93,6 +94,21 @@ static dem_status read_domain(dem_scene_reader *r, const dem_scene_value *v, con
 
 static const dem_choice local_frames[] = {{"space", DEM_LOCAL_SPACE}, {"vector", DEM_LOCAL_VECTOR}, {NULL, 0}};
 
+static const dem_field drag_table[] = {
+    {"density", dem_field_quantity, .at = offsetof(dem_drag_def, density), .needed = true,
+     .dimension = DEM_DIMENSION_DENSITY, .range = DEM_RANGE_FROM_0},
+    {"viscosity", dem_field_quantity, .at = offsetof(dem_drag_def, viscosity), .needed = true,
+     .dimension = DEM_DIMENSION_VISCOSITY, .range = DEM_RANGE_FROM_0},
+    {"velocity", dem_field_vector, .at = offsetof(dem_drag_def, velocity), .dimension = DEM_DIMENSION_VELOCITY},
+    {"buoyancy", dem_field_flag, .at = offsetof(dem_drag_def, buoyancy)},
+};
+static const dem_fields drag_fields = DEM_FIELDS(drag_table);
+
+static dem_status read_drag(dem_scene_reader *r, const dem_scene_value *v, const dem_field *field, void *into)
+{
+    return dem_json_is_null(v->json) ? DEM_OK : dem_field_object(r, v, field, into);
+}
+
 static const dem_field damping_table[] = {
     {"local", dem_field_quantity, .at = offsetof(dem_damping_def, local), .dimension = DEM_DIMENSION_NONE,
      .range = {.high = 1, .below = true}},
@@ -100,7 +116,7 @@ static const dem_field damping_table[] = {
     {"exclude_gravity", dem_field_flag, .at = offsetof(dem_damping_def, exclude_gravity)},
     {"viscous", dem_field_quantity, .at = offsetof(dem_damping_def, viscous), .dimension = DEM_DIMENSION_RATE,
      .range = DEM_RANGE_FROM_0},
-    DEM_UNBUILT("drag"),
+    {"drag", read_drag, .at = offsetof(dem_damping_def, drag), .fields = &drag_fields},
 };
 static const dem_fields damping_fields = DEM_FIELDS(damping_table);
 
@@ -118,8 +134,14 @@ static const dem_fields integrator_fields = DEM_FIELDS(integrator_table);
 static const dem_choice multiples[] = {{"sum", DEM_MULTIPLE_SUM},
                                        {"mean", DEM_MULTIPLE_MEAN},
                                        {"merge", DEM_MULTIPLE_MERGE},
-                                       {"soft", DEM_NOT_BUILT},
+                                       {"soft", DEM_MULTIPLE_SOFT},
                                        {NULL, 0}};
+
+static const dem_field soft_table[] = {
+    {"tau", read_or_auto, .at = offsetof(dem_soft_def, tau), .dimension = DEM_DIMENSION_LENGTH,
+     .range = DEM_RANGE_POSITIVE},
+};
+static const dem_fields soft_fields = DEM_FIELDS(soft_table);
 
 // ---- output
 
@@ -216,6 +238,7 @@ static const dem_field scene_table[] = {
     {"damping", dem_field_object, .at = offsetof(dem_scene, damping), .fields = &damping_fields},
     {"integrator", dem_field_object, .at = offsetof(dem_scene, integrator), .fields = &integrator_fields},
     {"contacts_between_clumps", dem_field_choice, .at = offsetof(dem_scene, multiple), .choices = multiples},
+    {"soft", dem_field_object, .at = offsetof(dem_scene, soft), .fields = &soft_fields},
     {"measures", dem_section_measures, .fields = &dem_measure_fields},
     {"output", dem_field_object, .at = offsetof(dem_scene, output), .fields = &output_fields},
 };
@@ -245,10 +268,33 @@ static dem_status check_laws(dem_scene_reader *r, const dem_scene_value *root)
     return DEM_OK;
 }
 
+// soft contacts have the laws of normal force and friction only
+static dem_status check_soft(dem_scene_reader *r, const dem_scene_value *root)
+{
+    const dem_scene *scene = r->scene;
+    dem_scene_value choice = dem_scene_member(root, "contacts_between_clumps"), soft = dem_scene_member(root, "soft");
+    if (scene->multiple != DEM_MULTIPLE_SOFT && soft.json)
+        return dem_scene_refuse(r, &soft, "set it, or leave this out",
+                                "is of contacts_between_clumps \"soft\", which is not set");
+    for (size_t i = 0; scene->multiple == DEM_MULTIPLE_SOFT && i < scene->law_count; i++) {
+        const dem_pair_law *law = &scene->laws[i];
+        const char *what = law->normal == DEM_NORMAL_JKR || law->normal == DEM_NORMAL_DMT ? "adhesion"
+                           : law->rolling != DEM_ROLLING_NONE                             ? "rolling resistance"
+                           : law->twisting != DEM_TWISTING_NONE                           ? "twisting resistance"
+                           : law->cohesion != DEM_COHESION_NONE                           ? "cohesion"
+                                                                                          : NULL;
+        if (what)
+            return dem_scene_refuse(r, &choice, "take \"sum\", or leave that out",
+                                    "is \"soft\", which does not go with the %s of contacts %zu", what, i);
+    }
+    return DEM_OK;
+}
+
 dem_status dem_scene_finish(dem_scene_reader *r, const dem_scene_value *root)
 {
     dem_scene *scene = r->scene;
     DEM_TRY(check_laws(r, root));
+    DEM_TRY(check_soft(r, root));
     DEM_TRY(dem_scene_check_measures(r, root));
     scene->time.safety = dem_scene_safety(scene);
     return DEM_OK;  // the output's directory is left alone: results go to where one works, not to where scenes are kept

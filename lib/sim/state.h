@@ -14,6 +14,7 @@
 #include "sim/kernels.h"
 #include "sim/laws.h"
 #include "sim/mesh_touch.h"
+#include "sim/soft.h"
 #include "sim/region.h"
 #include "sim/template.h"
 #include "sim/walls.h"
@@ -44,6 +45,7 @@ enum {
       "momenta before the contacts")                                                                                   \
     X(uint32_t, hold, 1, "-", (w)->held, "what of the motion is held")                                                 \
     X(double, kept, 6, "m/s, rad/s", (w)->kept, "velocity and spin that are held")                                     \
+    X(double, fluid, 4, "N s, J", fluid_drags(&(w)->damping.drag), "impulse of the drag in the last step")             \
     X(double, turning, 3, "rad/s2", (w)->integrator.rotation == DEM_ROTATION_WALTON_BRAUN,                             \
       "rate of the spin in the body, a step before")
 
@@ -56,6 +58,11 @@ typedef struct dem_bodies {
 #undef COLUMN
     uint32_t *place;  ///< [count] row of the i-th body of the scene
 } dem_bodies;
+
+static inline bool fluid_drags(const dem_drag_def *drag)
+{
+    return drag->density > 0 || drag->viscosity > 0;
+}
 
 /// Two bodies whose bounding balls are nearer than the skin; a < b, or a == b across a periodic side.
 typedef struct dem_pair {
@@ -121,6 +128,12 @@ typedef enum dem_pass {
 } dem_pass;
 
 /// What measuring fills; see dem/world.h.
+/// What the contacts of a segment do to a servo wall.
+typedef struct dem_servo_sum {
+    double force;     ///< that pushes the bodies, along the wall's direction [N]
+    double hardness;  ///< of the contacts [N/m]
+} dem_servo_sum;
+
 typedef struct dem_views {
     uint32_t *shape, *coordination, *by_row;  ///< by_row: body of a row
     double *scale, *mass;
@@ -167,6 +180,8 @@ struct dem_world {
     const dem_contact_instance *instance, *wall_instance;
     double *shifts;             ///< [4 an image] (periodic)
     double reach;               ///< how far beyond the touch contacts may hold [m]
+    double ahead;               ///< contacts are listed so much before they touch (soft) [m]
+    dem_soft soft;
     double skin, margin_least;  ///< of the search; of the candidates, by radius: see refresh.h [m]
     int threads;
     size_t domain_bodies;  ///< bodies of a domain: their momenta are written by one thread
@@ -182,6 +197,7 @@ struct dem_world {
     double epoch_time, last_step, next_step;  ///< last_step: 0 at the start, where the momenta are of the poses' time
     double wall_path;                         ///< what sweeping walls add to paths [m]
     double sweep_speed;                       ///< of sweeping walls about the bodies, at most [m/s]
+    double sweep_least;                       ///< of them, but for what servos add [m/s]
     dem_tally *tallies;                       ///< [segments * (1 + DEM_WALL_FORMS)]
     dem_motion_tally *motion_tallies;         ///< [segments]
     double push_work;
@@ -203,6 +219,7 @@ struct dem_world {
     size_t push_count, push_capacity;
     dem_views views;
     dem_regions *regions;  ///< NULL: nothing is measured by region
+    dem_servo_sum *servo_sums;  ///< [segments * walls] (servo)
     dem_pass_time clocks[DEM_PASSES];
     uint64_t searches;  ///< for pairs, since the world was made
     double warned[8];
@@ -258,8 +275,8 @@ static inline uint32_t body_hold(const dem_bodies *b, size_t row)
 /// The mass itself, also of a body that others see without end of it [kg].
 static inline double body_mass(const dem_world *w, size_t row)
 {
-    double scale = body_scale(&w->bodies, row), cube = scale * scale * scale;
-    return w->templates.items[w->bodies.shape[row]].mass * cube;
+    const dem_template *t = &w->templates.items[w->bodies.shape[row]];
+    return t->mass * template_bulk(t, body_scale(&w->bodies, row));
 }
 
 #endif

@@ -220,8 +220,12 @@ static dem_step_bound body_bound(const dem_world *w, size_t row, bool listed)
 {
     body_problem p;
     memset(&p, 0, sizeof p);
-    add_pairs(w, row, listed, &p);
-    add_walls(w, row, listed, &p);
+    if (w->features.soft)
+        dem_soft_problem(w, row, listed, p.stiffness, p.damping);
+    else {
+        add_pairs(w, row, listed, &p);
+        add_walls(w, row, listed, &p);
+    }
     if (w->bonds)
         add_bonds(w, row, &p);
     double k = dem_largest_eigenvalue6(p.stiffness),
@@ -256,7 +260,7 @@ static double stiffest_contact(const dem_world *w, size_t row, const double *law
 {
     const dem_template *t = &w->templates.items[w->bodies.shape[row]];
     double scale = body_scale(&w->bodies, row), r = t->radius_max * scale,
-           mass = t->least_mass * scale * scale * scale / 2;
+           mass = t->least_mass * template_bulk(t, scale) / 2;
     double radius = 0;
     if (law[LAW_HERTZ] > 0) {
         // the duration of an impact, as that of a spring: 2.943 d / v = pi / w
@@ -270,8 +274,7 @@ static double stiffest_contact(const dem_world *w, size_t row, const double *law
     return law_stiffness(law, r / 2, radius) / mass;
 }
 
-// a speed that impacts may have: twice the present one, or of a fall by some sizes [m/s]
-static double impact_speed(const dem_world *w)
+double dem_step_impact_speed(const dem_world *w)
 {
     double fastest = 0, size = 0;
     for (size_t row = 0; row < w->bodies.count; row++) {
@@ -283,7 +286,7 @@ static double impact_speed(const dem_world *w)
 
 double dem_step_accurate(const dem_world *w)
 {
-    double highest = 0, speed = w->features.hertz ? impact_speed(w) : 0;
+    double highest = 0, speed = w->features.hertz ? dem_step_impact_speed(w) : 0;
     size_t n = w->laws.material_count;
     for (size_t row = 0; row < w->bodies.count; row++) {
         uint32_t material = w->templates.items[w->bodies.shape[row]].material;

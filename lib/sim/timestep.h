@@ -33,6 +33,9 @@ double dem_step_accurate(const dem_world *world);
 /// The same, or without any law one that the scene can live with [s].
 double dem_step_guess(const dem_world *world);
 
+/// A speed that impacts may have: twice the present one, or of a fall by some sizes [m/s].
+double dem_step_impact_speed(const dem_world *world);
+
 /// Sets the first step, now that contacts are listed.
 dem_status dem_step_choose(dem_world *world, dem_error *error);
 

@@ -121,13 +121,13 @@ static void look_at_body(wall_look *look, size_t row, new_list *list, double *sl
     if (hold_whole(body_hold(&w->bodies, row)))
         return;
     double strides = WALL_STRIDES * (body_stride(&w->bodies, row, w->next_step) + w->sweep_speed * w->next_step);
-    double margin = dem_refresh_margin(w, row, row, strides);
+    double margin = dem_refresh_margin(w, row, row, strides) + w->ahead;
     for (uint32_t i = 0; i < w->walls.count; i++) {
         if (w->walls.items[i].form != list->form)
             continue;
         double room = list->form == DEM_FORM_MESH ? look_at_mesh(look, row, i, margin, list->begin, &list->touches)
                                                   : look_at_smooth(look, row, i, margin);
-        *slack = smaller(*slack, room);
+        *slack = smaller(*slack, room - w->ahead);
     }
 }
 

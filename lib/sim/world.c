@@ -6,11 +6,13 @@
 #include "sim/bonds.h"
 #include "sim/broad.h"
 #include "sim/contacts.h"
+#include "sim/fluid.h"
 #include "sim/lists.h"
 #include "sim/measure.h"
 #include "sim/motion.h"
 #include "sim/place.h"
 #include "sim/schemes.h"
+#include "sim/servo.h"
 #include "sim/timestep.h"
 
 static const char *const pass_names[DEM_PASSES] = {
@@ -57,7 +59,9 @@ static void set_features(dem_world *w, const dem_body_def *defs, size_t count)
     f->ledger = w->ledger && (w->laws.damped || f->jkr || f->friction || features_turning(*f) || w->walls.move);
     f->periodic = w->periodic;
     f->moving = w->walls.move;
-    f->weighted = w->multiple != DEM_MULTIPLE_SUM;
+    f->reaction = w->walls.servo;
+    f->weighted = w->multiple == DEM_MULTIPLE_MEAN || w->multiple == DEM_MULTIPLE_MERGE;
+    f->soft = w->multiple == DEM_MULTIPLE_SOFT;
     for (size_t i = 0; i < count; i++) {
         f->offset |= !w->templates.items[defs[i].shape].centred;
         f->scaled |= defs[i].scale != 1;
@@ -88,13 +92,14 @@ static dem_status make_lists(dem_world *w, dem_error *error)
         w->mesh_touches = dem_alloc_zero(w->segment_count, sizeof *w->mesh_touches);
     w->tallies = dem_alloc_zero(w->segment_count * (1 + DEM_WALL_FORMS), sizeof *w->tallies);
     w->motion_tallies = dem_alloc_zero(w->segment_count, sizeof *w->motion_tallies);
+    w->servo_sums = dem_alloc_zero(w->walls.servo ? w->segment_count * w->walls.count : 0, sizeof *w->servo_sums);
     w->asked = dem_alloc(w->bodies.padded, sizeof *w->asked);
     w->strained = dem_alloc(w->features.watch ? w->bodies.padded : 0, sizeof *w->strained);
     w->part_strained = dem_alloc_zero((size_t)w->threads + 1, sizeof *w->part_strained);
     w->part_asked = dem_alloc_zero((size_t)w->threads + 1, sizeof *w->part_asked);
     w->parts = dem_alloc_zero((size_t)w->threads + 1, sizeof *w->parts);
     w->candidates = dem_alloc_zero((size_t)w->threads, sizeof *w->candidates);
-    if ((used(w, DEM_FORM_MESH) && !w->mesh_touches) || !w->tallies || !w->motion_tallies || !w->asked ||
+    if ((used(w, DEM_FORM_MESH) && !w->mesh_touches) || !w->tallies || !w->motion_tallies || !w->servo_sums || !w->asked ||
         !w->part_asked || !w->strained || !w->part_strained || !w->parts || !w->candidates)
         return dem_fail_memory(error);
     size_t longest = 0;
@@ -155,11 +160,14 @@ static dem_status make_state(dem_world *w, const dem_scene *scene, dem_error *er
     DEM_TRY(dem_templates_create(scene, &w->templates, error));
     DEM_TRY(dem_laws_create(scene, &w->laws, error));
     DEM_TRY(dem_walls_create(w->ctx, scene, &w->walls, error));
+    if (w->walls.servo && w->multiple == DEM_MULTIPLE_SOFT)
+        return dem_fail(error, DEM_BAD_INPUT,
+                        "servo walls cannot measure soft contacts yet; set contacts_between_clumps to \"sum\"");
     DEM_TRY(dem_place_bodies(w, scene, &defs, &count, error));
     set_holds(w, defs, count);
     set_features(w, defs, count);
     dem_features still = w->features;
-    still.moving = false;
+    still.moving = still.reaction = false;
     w->instance = dem_kernels_instance(w->kernels, still);
     w->wall_instance = dem_kernels_instance(w->kernels, w->features);
     dem_status status = dem_bodies_create(w, defs, count, error);
@@ -172,6 +180,7 @@ static dem_status make_state(dem_world *w, const dem_scene *scene, dem_error *er
     w->team = dem_team_create(w->threads);
     if (!w->team)
         return dem_fail_memory(error);
+    DEM_TRY(dem_soft_create(w, scene->soft.tau, error));
     DEM_TRY(set_reach(w, error));
     w->skin = larger(larger(dem_broad_skin(w), 2.2 * w->reach), 1.1 * dem_bonds_gap(w));
     DEM_TRY(dem_search_create(w, error));
@@ -193,6 +202,14 @@ static dem_status make_state(dem_world *w, const dem_scene *scene, dem_error *er
     return DEM_OK;
 }
 
+static dem_status check_fluid(const dem_drag_def *drag, dem_error *error)
+{
+    if (drag->density >= 0 && drag->viscosity >= 0 && isfinite(drag->density + drag->viscosity) &&
+        isfinite(v3_norm2(drag->velocity)))
+        return DEM_OK;
+    return dem_fail(error, DEM_USAGE, "damping.drag: has a number that cannot be; give density and viscosity from 0");
+}
+
 static dem_status check_schemes(const dem_scene *scene, dem_error *error)
 {
     if ((unsigned)scene->integrator.translation < DEM_TRANSLATION_SCHEMES &&
@@ -205,6 +222,7 @@ dem_status dem_world_create(const dem_ctx *ctx, const dem_scene *scene, dem_worl
 {
     *world = NULL;
     DEM_TRY(check_schemes(scene, error));
+    DEM_TRY(check_fluid(&scene->damping.drag, error));
     dem_world *w = *world = aligned_alloc(64, (sizeof *w + 63) / 64 * 64);
     if (!w)
         return dem_fail_memory(error);
@@ -258,13 +276,14 @@ void dem_world_destroy(dem_world *w)
         free(w->candidates[t].pairs);
         free(w->candidates[t].work);
     }
+    dem_soft_release(w);
     dem_team_destroy(w->team);
     dem_views_release(&w->views);
     dem_regions_release(w->regions);
     dem_bonds_release(w->bonds);
     void *all[] = {w->clumps,         w->shape_names, w->shifts,     w->mesh_touches, w->tallies,
                    w->motion_tallies, w->asked,       w->part_asked, w->parts,        w->fresh,
-                   w->candidates,     w->pushes,      w->strained,   w->part_strained};
+                   w->candidates,     w->pushes,      w->strained,   w->part_strained, w->servo_sums};
     for (size_t i = 0; i < sizeof all / sizeof *all; i++)
         free(all[i]);
     free(w);
@@ -403,9 +422,17 @@ static void step_part(void *user, int which)
         dem_mesh_touch_measure(w, begin, end);
     if (w->features.weighted)
         dem_weigh_contacts(w, begin, end);
-    wall_pass(w, begin, end, kick);
+    if (w->features.soft)
+        dem_soft_walls(w, begin, end, kick, part);
+    else
+        wall_pass(w, begin, end, kick);
     double t1 = dem_clock();
-    contact_pass(w, begin, end, kick);
+    if (w->walls.servo)
+        dem_servo_gather(w, begin, end);
+    if (w->features.soft)
+        dem_soft_pairs(w, begin, end, kick, part);
+    else
+        contact_pass(w, begin, end, kick);
     double t2 = dem_clock();
     if (w->bonds)
         bond_pass(w, begin, end, kick, part);
@@ -419,7 +446,11 @@ static void step_part(void *user, int which)
         dem_team_meet(w->team);
     }
     double t3 = dem_clock();
+    if (w->bodies.fluid)
+        dem_fluid_push(w, begin * DEM_SEGMENT, end * DEM_SEGMENT, kick);
     motion_pass(w, begin, end, kick, part);
+    if (w->bodies.fluid && w->ledger)
+        dem_fluid_tally(w, begin * DEM_SEGMENT, end * DEM_SEGMENT);
     double t4 = dem_clock();
     if (part == 0) {
         w->clocks[DEM_PASS_WALLS].seconds += t1 - t0;
@@ -474,6 +505,8 @@ static dem_status step_once(dem_world *w, dem_error *error)
         w->push_count = 0;
     }
     join_asked(w);
+    if (w->walls.servo)
+        dem_servo_move(w);
     set_time(w);
     if (w->bonds)
         DEM_TRY(dem_bonds_settle(w, error));

@@ -32,4 +32,36 @@ says "dem-study verify: error: there is no case 'nothing'; --list shows all; see
 run 2 dem-study verify -o v.pdf
 says "dem-study verify: error: 'v.pdf' names no form that can be written; end it in .html or .csv; see dem-study verify --help"
 run 4 dem-study verify full-slip -q -o /nowhere/v.csv
+
+# ---- mohr-coulomb: phi = 30 degrees, c = 5 kPa
+cat >tests.csv <<'END'
+# s1 = s3 (1 + sin) / (1 - sin) + 2 c cos / (1 - sin)
+name, sigma3_kPa, sigma1_kPa
+a, 0, 17.3205080757
+b, 10, 47.3205080757
+c, 50, 167.3205080757
+END
+run 0 dem-study mohr-coulomb tests.csv -o m.svg -o m.html -o m.csv
+prints '^  friction angle  .* 30 deg$'
+prints '^  cohesion  .* 5000 Pa$'
+prints 'axial stress.* 17320\.508 Pa$'
+prints 'shear stress.* 8660\.254 Pa$'
+for file in m.svg m.html; do
+    python3 -c 'import sys, xml.dom.minidom; xml.dom.minidom.parse(sys.argv[1])' $file || fail "$file is no XML"
+done
+[ "$(grep -c '<path' m.svg)" = 3 ] || fail 'not three circles'
+head -1 m.csv | grep -q '^friction_angle_deg,' || fail 'head of m.csv'
+run 0 dem-study mohr-coulomb tests.csv --json --unit kPa
+prints '"cohesion_Pa": (5000|4999\.9|5000\.0)'
+head -2 tests.csv >none.csv
+run 3 dem-study mohr-coulomb none.csv
+says 'dem-study mohr-coulomb: error: none.csv: a line needs two tests and should have three or more; there are 0'
+printf 'sigma1,sigma2\n1,2\n' >none.csv
+run 3 dem-study mohr-coulomb none.csv
+mentions '^dem-study mohr-coulomb: error: none.csv:1: has no column sigma3; begin the table'
+printf 'sigma1,sigma3\n3,2\n1,x\n' >none.csv
+run 3 dem-study mohr-coulomb none.csv
+mentions 'none.csv:3: sigma3 is no number'
+run 2 dem-study mohr-coulomb tests.csv --unit mm
+mentions '-unit: '
 finish

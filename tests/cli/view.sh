@@ -58,6 +58,8 @@ usage 'tells no frames' results -o a%d.png --frames some
 usage 'a sequence shows one run' results results -o a%d.png --frames all
 usage 'only the directory of a run has frames' "$clumps/sand.json" -o a.png --frame 1
 usage 'are for runs' "$clumps/sand.json" -o a.png --colour speed
+usage 'contacts are those of a run' "$clumps/sand.json" -o a.png --contacts
+usage 'leave --colour, --clip and --bodies out' results -o a.png --contacts --colour speed
 usage "'parsec' is not a unit of length" "$grains/sand.obj" -o a.png --unit parsec
 [ ! -e a.png ] || fail "a picture in spite of wrong usage"
 
@@ -181,6 +183,19 @@ run 0 dem-view "$clumps" -o a.png --size 240x90 --no-names
 cmp -s a.png sheet.png && fail "--no-names changes nothing"
 run 2 dem-view "$clumps" -o a.png --size 20x20
 mentions 'do not fit into 20 x 20 pixels; give a larger --size'
+
+# ---- contacts
+run 3 dem-view results -o a.png --contacts
+mentions 'has no network of contacts; give the scene an interval of contacts'
+run 0 dem-run scene.json -q -o net -D output.contacts=1ms -D time.end=60ms -D contacts.0.normal.restitution=0.1
+run 0 dem-view net -o chains.png $small --contacts
+prints '^chains.png: [0-9]+ contacts at t = 60 ms, force from '
+is_png chains.png 160x120
+run 0 dem-view net -o many%d.png $small --contacts --frames all --range 0..2 -q
+cmp -s many12.png many11.png && fail "all times have the same contacts"
+echo junk >net/frames/contacts_000060.vtp
+run 3 dem-view net -o a.png $small --contacts
+mentions 'net/frames/contacts_000060.vtp: is not a VTP file'
 
 # ---- nowhere to write
 run 4 dem-view results -o /proc/nowhere/a.png $small

@@ -1,0 +1,69 @@
+/// Soft contacts: one contact per pair of bodies, whose stiffness, damping and friction do not depend on how many
+/// spheres describe the surfaces ("contacts_between_clumps": "soft").
+///
+/// Over the pairs of spheres a = (i, j) of two bodies, with overlaps d_a and weights w_i w_j (walls: w_j = 1), the
+/// overlap of the bodies is the soft maximum D = tau ln S, S = sum w_i w_j s(d_a / tau), where s is the exponential
+/// function, taken smoothly to 0 between -3 and -6. The law of the scene acts on D. A single sphere has D = d.
+///
+/// All forces are those of the potential U(D), so they are conservative and smooth; a sphere that is there twice has
+/// half the weight each time. With omega_a = d D / d d_a (they add up to about 1) the pair a bears F(D) omega_a along
+/// its own line of centres. Dashpots: the law's along D, with the mass that the whole patch sees, and the same constant
+/// against what the pairs' speeds differ by, so that rocking on a patch is damped, too. Friction acts at the mean
+/// contact point and, as a twisting spring, by the radius of gyration of the patch.
+///
+/// The weights are those with which a plane or a ball that touches the grain's surface has S = 1: see soft_weights.c.
+/// Radii of curvature (Hertz) are those of the equivalent spheres, never of a sphere of the clump.
+#ifndef DEM_SIM_SOFT_H
+#define DEM_SIM_SOFT_H
+
+#include "dem/world.h"
+#include "sim/kernels.h"
+
+/// Pairs of spheres count down to this overlap [tau]; with less than the half of it, in part.
+#define DEM_SOFT_REACH 6.0
+
+typedef struct dem_soft {
+    double tau;          ///< [m]; 0: contacts are not soft
+    double *weights;     ///< of the spheres of each shape and rung of sizes [-]
+    uint32_t *first;     ///< [bodies] weight of the body's first sphere
+    double *radius;      ///< [bodies] of curvature [m]
+    double **work;       ///< [threads] rows of a segment's contacts, and one of none behind them
+    size_t capacity;     ///< rows in each
+    size_t table_count;  ///< tables of weights that were made
+    const struct dem_soft_kernels *kernels;
+} dem_soft;
+
+/// Weights for the bodies of a world whose contacts are soft; `tau` [m], 0: by the overlap of likely impacts, see
+/// soft.c. Refuses what soft contacts do not have. Nothing where contacts are not soft.
+dem_status dem_soft_create(dem_world *world, double tau, dem_error *error);
+void dem_soft_release(dem_world *world);
+
+/// Room for the work of the segments as they are now.
+dem_status dem_soft_reserve(dem_world *world, dem_error *error);
+
+/// The forces of the contacts of the segments [begin, end), added to the momenta: of pairs, or of all walls.
+void dem_soft_pairs(dem_world *world, size_t begin, size_t end, double kick, size_t thread);
+void dem_soft_walls(dem_world *world, size_t begin, size_t end, double kick, size_t thread);
+
+/// What the contacts of a segment do: each patch is told at the place of its deepest pair of spheres.
+void dem_soft_records(dem_world *world, size_t segment, int form, dem_contact_record *records);
+
+/// Adds the soft contacts of a body, in its axes and in units of its masses, to its problem of the time step.
+void dem_soft_problem(const dem_world *world, size_t row, bool listed, double stiffness[6][6], double damping[6][6]);
+
+/// Weights of the spheres (x y z r) of one template for the given tau; `size`: its equivalent diameter [m].
+/// False: no memory.
+bool dem_soft_weigh(const double (*spheres)[4], size_t count, double tau, double size, double *weights);
+
+/// The loop over the contacts of a segment, compiled once per instruction set (kernels.cmake); all give the same bits.
+/// Forces, or records.
+typedef struct dem_soft_kernels {
+    void (*segment)(dem_world *world, size_t segment, int form, double kick, double *work, dem_contact_record *records);
+} dem_soft_kernels;
+
+/// The set named; NULL: none such, or not usable here.
+const dem_soft_kernels *dem_soft_kernels_choose(const char *name);
+
+extern const dem_soft_kernels dem_soft_kernels_plain, dem_soft_kernels_v3, dem_soft_kernels_v4;
+
+#endif

@@ -1,0 +1,125 @@
+/// Grains against a wall and against their twins, placed by hand or in impact: what soft contacts are judged by.
+#ifndef DEM_TESTS_SOFT_CASES_H
+#define DEM_TESTS_SOFT_CASES_H
+
+#include "sim/bodies.h"
+#include "sim/lists.h"
+#include "worlds.h"
+
+/// Adds a clump of a diameter of 1 m, scaled from what it is given in.
+static inline uint32_t model_of_clump(model *m, const dem_clump *clump, double *scale)
+{
+    dem_clump_def def = dem_clump_view(clump);
+    uint32_t i = (uint32_t)m->scene.shape_count++;
+    m->shapes[i] = (dem_shape_def){.name = "grain", .clump = clump};
+    *scale = 1 / cbrt(6 * def.volume / DEM_PI);
+    return i;
+}
+
+/// Puts a body somewhere by hand, at rest; call soft_placed behind the last.
+static inline void soft_place(dem_world *w, size_t body, dem_vec3 position, dem_quat orientation)
+{
+    size_t row = row_of(w, body);
+    double *pose = body_pose(&w->bodies, row);
+    dem_quat q = template_run_orientation(&w->templates.items[w->bodies.shape[row]], quat_unit(orientation));
+    memcpy(pose, (double[]){position.x, position.y, position.z, q.w, q.x, q.y, q.z}, 7 * sizeof *pose);
+    w->bodies.limit[row] = -1;
+    w->bodies.path_then[row] = -INFINITY;
+    if (w->bodies.wall_limit)
+        w->bodies.wall_limit[row] = -1;
+}
+
+/// Lets a body move without spin, from when it stands where it was put.
+static inline void soft_throw(dem_world *w, size_t body, dem_vec3 velocity)
+{
+    size_t row = row_of(w, body);
+    double *motion = body_pose(&w->bodies, row) + 8, *momentum = w->bodies.momentum + DEM_ROW * row;
+    double mass = w->bodies.inertia[DEM_ROW * row + 5];
+    memcpy(motion, (double[]){velocity.x, velocity.y, velocity.z, 0, 0, 0}, 6 * sizeof *motion);
+    memcpy(momentum, (double[]){mass * velocity.x, mass * velocity.y, mass * velocity.z, 0, 0, 0},
+           6 * sizeof *momentum);
+}
+
+static inline void soft_placed(dem_world *w)
+{
+    dem_error error;
+    w->asked_count = w->bodies.count;
+    for (size_t i = 0; i < w->asked_count; i++)
+        w->asked[i] = (uint32_t)i;
+    for (size_t i = 0; i < w->pairs.count; i++)
+        w->pairs.items[i].normal[0] = 2;  // forget where they were nearest
+    for (size_t i = 0; i < 2 * w->pairs.count; i++)
+        w->pairs.adjacency_limit[i] = -1;
+    check_ok(dem_lists_update(w, &error), error);
+    measured(w);
+}
+
+/// How far the spheres of a body reach in the direction [m].
+static inline double soft_support(const dem_world *w, size_t body, dem_vec3 n)
+{
+    size_t row = row_of(w, body);
+    const dem_template *t = &w->templates.items[w->bodies.shape[row]];
+    dem_vec3 own = quat_unrotate(body_orientation(&w->bodies, row), n);
+    double most = -INFINITY;
+    for (uint32_t i = t->first; i < t->first + t->count; i++) {
+        const double *s = w->templates.spheres[i];
+        most = fmax(most, v3_dot(own, v3(s[0], s[1], s[2])) + s[3]);
+    }
+    return most * body_scale(&w->bodies, row);
+}
+
+/// The spheres of a body in space; the caller frees them.
+static inline dem_ball *soft_balls(const dem_world *w, size_t body, size_t *count)
+{
+    size_t row = row_of(w, body);
+    const dem_template *t = &w->templates.items[w->bodies.shape[row]];
+    double scale = body_scale(&w->bodies, row);
+    dem_ball *balls = calloc(t->count, sizeof *balls);
+    check(balls);
+    *count = t->count;
+    for (uint32_t i = 0; i < t->count; i++) {
+        const double *s = w->templates.spheres[t->first + i];
+        dem_vec3 arm = quat_rotate(body_orientation(&w->bodies, row), v3_scale(v3(s[0], s[1], s[2]), scale));
+        balls[i] = (dem_ball){v3_add(body_position(&w->bodies, row), arm), s[3] * scale};
+    }
+    return balls;
+}
+
+/// The deepest pair of spheres of bodies 0 and 1: its overlap and normal.
+static inline double soft_deepest(const dem_world *w, dem_vec3 *normal)
+{
+    double most = -INFINITY;
+    size_t count[2];
+    dem_ball *a = soft_balls(w, 0, &count[0]), *b = soft_balls(w, 1, &count[1]);
+    *normal = v3(1, 0, 0);
+    for (size_t i = 0; i < count[0]; i++)
+        for (size_t j = 0; j < count[1]; j++) {
+            double overlap = a[i].radius + b[j].radius - v3_distance(a[i].centre, b[j].centre);
+            if (overlap > most) {
+                most = overlap;
+                *normal = v3_unit(v3_sub(b[j].centre, a[i].centre));
+            }
+        }
+    free(a);
+    free(b);
+    return most;
+}
+
+/// The twin's place along the x axis from body 0 at which the deepest overlap is as given.
+static inline double soft_twin_place(dem_world *w, dem_quat q0, dem_quat q1, double overlap, dem_vec3 *normal)
+{
+    double low = 0.1, high = 4;
+    *normal = v3(1, 0, 0);
+    for (int i = 0; i < 40; i++) {
+        double x = 0.5 * (low + high);
+        soft_place(w, 0, v3(0, 0, 0), q0);
+        soft_place(w, 1, v3(x, 0, 0), q1);
+        if (soft_deepest(w, normal) > overlap)
+            low = x;
+        else
+            high = x;
+    }
+    return low;
+}
+
+#endif
