@@ -11,6 +11,9 @@
 /// against what the pairs' speeds differ by, so that rocking on a patch is damped, too. Friction acts at the mean
 /// contact point and, as a twisting spring, by the radius of gyration of the patch.
 ///
+/// A wall is one partner, and so is each of the six sides of a box. The contacts with a mesh are grouped by normals
+/// first, deepest first, so that each face of a groove bears for itself; see dem_soft_leaders.
+///
 /// The weights are those with which a plane or a ball that touches the grain's surface has S = 1: see soft_weights.c.
 /// Radii of curvature (Hertz) are those of the equivalent spheres, never of a sphere of the clump.
 #ifndef DEM_SIM_SOFT_H
@@ -32,6 +35,24 @@ typedef struct dem_soft {
     size_t table_count;  ///< tables of weights that were made
     const struct dem_soft_kernels *kernels;
 } dem_soft;
+
+/// The normals about which the contacts with a mesh are grouped: that of the deepest, of the deepest that is not near
+/// it, and so on. A contact belongs to the first one that it is near to.
+enum { DEM_SOFT_LEADERS = 8 };
+typedef struct dem_soft_leaders {
+    dem_vec3 normal[DEM_SOFT_LEADERS];
+    int count;
+} dem_soft_leaders;
+
+/// The group of a contact; -1: of none yet.
+static inline int soft_group(const dem_soft_leaders *leaders, dem_vec3 normal)
+{
+    const double near = 0.866;  // cosine of 30 degrees
+    for (int i = 0; i < leaders->count; i++)
+        if (normal.x * leaders->normal[i].x + normal.y * leaders->normal[i].y + normal.z * leaders->normal[i].z > near)
+            return i;
+    return leaders->count == DEM_SOFT_LEADERS ? DEM_SOFT_LEADERS - 1 : -1;
+}
 
 /// Weights for the bodies of a world whose contacts are soft; `tau` [m], 0: by the overlap of likely impacts, see
 /// soft.c. Refuses what soft contacts do not have. Nothing where contacts are not soft.
