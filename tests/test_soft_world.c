@@ -265,6 +265,28 @@ static void meshes_are_as_the_planes_they_stand_for(void **state)
     }
 }
 
+// ---- telling
+
+static void explain_tells_what_the_sum_inflates(void **state)
+{
+    (void)state;
+    for (int i = 0; i < 2; i++) {
+        model *m = shaken(8);
+        m->scene.multiple = i == 0 ? DEM_MULTIPLE_SUM : DEM_MULTIPLE_SOFT;
+        m->scene.soft.tau = 0;
+        dem_world *w = model_world(m, 1);
+        char *text;
+        dem_error error;
+        check_ok(dem_world_explain(w, &text, &error), error);
+        check(strstr(text, " of 40\n") && !strstr(text, " of 1\n"));
+        check((strstr(text, "as stiff as asked") != NULL) == (i == 0));
+        check((strstr(text, "by the overlap of likely impacts; 3 tables of weights") != NULL) == (i == 1));
+        free(text);
+        dem_world_destroy(w);
+        model_free(m);
+    }
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -275,6 +297,7 @@ int main(void)
         cmocka_unit_test(frames_and_order_do_not_matter),
         cmocka_unit_test(automatic_steps_keep_the_energy),
         cmocka_unit_test(meshes_are_as_the_planes_they_stand_for),
+        cmocka_unit_test(explain_tells_what_the_sum_inflates),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -19,6 +19,7 @@
 #ifndef DEM_SIM_SOFT_H
 #define DEM_SIM_SOFT_H
 
+#include "base/text.h"
 #include "dem/world.h"
 #include "sim/kernels.h"
 
@@ -27,6 +28,7 @@
 
 typedef struct dem_soft {
     double tau;          ///< [m]; 0: contacts are not soft
+    bool automatic;      ///< tau was not given
     double *weights;     ///< of the spheres of each shape and rung of sizes [-]
     uint32_t *first;     ///< [bodies] weight of the body's first sphere
     double *radius;      ///< [bodies] of curvature [m]
@@ -58,6 +60,12 @@ static inline int soft_group(const dem_soft_leaders *leaders, dem_vec3 normal)
 /// soft.c. Refuses what soft contacts do not have. Nothing where contacts are not soft.
 dem_status dem_soft_create(dem_world *world, double tau, dem_error *error);
 void dem_soft_release(dem_world *world);
+
+/// The mean over the bodies of the overlap that a likely impact with their like has [m].
+double dem_soft_likely_overlap(const dem_world *world);
+
+/// What --explain says of the number of spheres that touch at once.
+void dem_soft_explain(const dem_world *world, dem_buffer *out);
 
 /// Room for the work of the segments as they are now.
 dem_status dem_soft_reserve(dem_world *world, dem_error *error);
