@@ -277,7 +277,10 @@ static double imbalance(const mode *c, double parts)
     law->tail = c->tail;
     law->friction = c->friction;
     law->friction_coefficient = 0.4;
-    m->scene.damping = (dem_damping_def){c->local, c->frame, c->exclude_gravity, c->viscous};
+    m->scene.damping = (dem_damping_def){.local = c->local,
+                                         .local_frame = c->frame,
+                                         .exclude_gravity = c->exclude_gravity,
+                                         .viscous = c->viscous};
     m->materials[0].young = 1e7;
     model_cloud(m, 6, 0.02, 1);
     model_dumbbell(m, 0.006, 0.008);

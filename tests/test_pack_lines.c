@@ -41,10 +41,10 @@ static void close_fixture(fixture *f)
     dem_mesh_free(&f->mesh);
 }
 
-static void build(const fixture *f, const dem_pack_kernels *kernels, double step, int threads, dem_lines *lines)
+static void build(const fixture *f, const dem_pack_kernels *kernels, double step, dem_crew *crew, dem_lines *lines)
 {
     dem_error error;
-    check_ok(dem_lines_build(&f->grain, kernels, step, (const double[2]){0.38197, 0.2764}, BALLS, threads, lines, &error),
+    check_ok(dem_lines_build(&f->grain, kernels, step, (const double[2]){0.38197, 0.2764}, BALLS, crew, lines, &error),
              error);
 }
 
@@ -63,7 +63,7 @@ static void volumes_by_lines_are_the_exact_ones(void **state)
     fixture f;
     open_fixture(&f);
     dem_lines lines;
-    build(&f, dem_pack_kernels_choose(NULL), 0.005, 1, &lines);
+    build(&f, dem_pack_kernels_choose(NULL), 0.005, NULL, &lines);
     dem_line_volumes v = measure(&f, &lines, NULL);
     dem_ball_union exact;
     dem_error error;
@@ -96,7 +96,7 @@ static void the_gradient_is_that_of_finite_differences(void **state)
     fixture f;
     open_fixture(&f);
     dem_lines lines;
-    build(&f, dem_pack_kernels_choose(NULL), 0.004, 1, &lines);
+    build(&f, dem_pack_kernels_choose(NULL), 0.004, NULL, &lines);
     double gradient[BALLS][4], error2 = 0, size2 = 0;
     for (int weighted = 0; weighted < 2; weighted++) {
         lines.protruding = weighted ? 7 : 1;
@@ -139,7 +139,8 @@ static void lines_give_the_same_bits_on_every_instruction_set_and_for_any_number
         for (int threads = 1; kernels && threads <= 3; threads++) {
             double gradient[BALLS][4];
             dem_lines lines;
-            build(&f, kernels, 0.0125, threads, &lines);
+            dem_crew *crew = dem_crew_create(threads);
+            build(&f, kernels, 0.0125, crew, &lines);
             dem_line_volumes v = measure(&f, &lines, gradient);
             if (!have) {
                 first = v;
@@ -149,6 +150,7 @@ static void lines_give_the_same_bits_on_every_instruction_set_and_for_any_number
             check(memcmp(&v, &first, sizeof v) == 0);
             check(memcmp(gradient, first_gradient, sizeof gradient) == 0);
             dem_lines_release(&lines);
+            dem_crew_destroy(crew);
         }
     }
     close_fixture(&f);

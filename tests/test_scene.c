@@ -48,7 +48,8 @@ static void the_plain_sections_are_read(void **state)
         "'time': {'end': '500 ms', 'step': '1 us', 'safety': 0.5, 'contact_steps': 20},\n"
         "'domain': {'min': [0, '-1 cm', null], 'max': [1, 2, null], 'periodic': [true, false, false],\n"
         " 'leaving': 'ignore'}, 'inlets': {}, 'bonds': [],\n"
-        "'damping': {'local': 0.7, 'local_frame': 'vector', 'exclude_gravity': true, 'viscous': '3 1/s'},\n"
+        "'damping': {'local': 0.7, 'local_frame': 'vector', 'exclude_gravity': true, 'viscous': '3 1/s',\n"
+        " 'drag': {'density': '1 g/cm3', 'viscosity': '2 mPa s', 'velocity': [0, '5 cm/s', 0], 'buoyancy': true}},\n"
         "'integrator': {'translation': 'taylor', 'rotation': 'no-squish'}, 'contacts_between_clumps': 'merge',\n"
         "'output': {'directory': 'here', 'frames': '5 ms', 'series': 1e-3, 'checkpoint': '2 min', 'energy': false}}");
     assert_string_equal(s.title, "sand");
@@ -59,6 +60,8 @@ static void the_plain_sections_are_read(void **state)
     check(s.domain.periodic[0] && !s.domain.periodic[1] && s.domain.leaving == DEM_LEAVING_IGNORE);
     check(s.damping.local == 0.7 && s.damping.local_frame == DEM_LOCAL_VECTOR && s.damping.exclude_gravity);
     check(s.damping.viscous == 3 && s.multiple == DEM_MULTIPLE_MERGE);
+    check(s.damping.drag.density == 1000 && s.damping.drag.viscosity == 2e-3 && s.damping.drag.buoyancy);
+    check_vec(s.damping.drag.velocity, v3(0, 0.05, 0), 1e-17);
     check(s.integrator.translation == DEM_TRANSLATION_TAYLOR && s.integrator.rotation == DEM_ROTATION_NO_SQUISH);
     assert_string_equal(s.output.directory, "here");
     dem_scene soft = scene_of("{'schema': 'dem-scene/1', 'contacts_between_clumps': 'soft', 'soft': {'tau': '3 um'}}");

@@ -17,6 +17,7 @@ typedef enum dem_dimension {
     DEM_DIMENSION_MASS,             ///< [kg]
     DEM_DIMENSION_INERTIA,          ///< [kg m^2]
     DEM_DIMENSION_RATE,             ///< [1/s]
+    DEM_DIMENSION_VISCOSITY,        ///< [Pa s]
     DEM_DIMENSION_FORCE,            ///< [N]
     DEM_DIMENSION_SLOWNESS,         ///< [s/m]
     DEM_DIMENSION_NONE,             ///< a pure number [-]

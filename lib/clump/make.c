@@ -2,6 +2,7 @@
 
 #include <stdlib.h>
 
+#include "base/clock.h"
 #include "base/memory.h"
 #include "base/text.h"
 #include "clump/make.h"
@@ -115,13 +116,21 @@ static dem_status make(const dem_ctx *ctx, const dem_mesh *mesh, const dem_make_
                          .seed = packing.seed,
                          .version = DEM_VERSION};
     dem_union balls;
+    dem_laps laps;
+    dem_laps_begin(&laps);
     DEM_TRY(dem_clump_pack(ctx, mesh, &packing, &work->pack, error));
+    dem_laps_end(&laps, "packing");
     DEM_TRY(dem_balls_union(work->pack.balls, work->pack.count, &balls, error));
     dem_solid solid = dem_mesh_solid(mesh);
     set_mass(&def, &solid, &balls, options);
+    dem_laps_end(&laps, "mass");
     DEM_TRY(dem_fidelity_measure(ctx, mesh, work->pack.balls, work->pack.count, 0, &def.fidelity, error));
+    dem_laps_end(&laps, "fidelity");
     DEM_TRY(dem_shape_measure(ctx, mesh, &def.shape, error));
+    dem_laps_end(&laps, "shape");
     DEM_TRY(dem_make_surface(mesh, options->surface_triangles, &def, &work->surface, error));
+    dem_laps_end(&laps, "surface");
+    dem_laps_log(&laps, ctx, "clump");
 
     work->balls = dem_alloc(work->pack.count, sizeof *work->balls);
     if (!work->balls)

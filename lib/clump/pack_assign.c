@@ -1,3 +1,4 @@
+#include <stdlib.h>
 #include <string.h>
 
 #include "base/status.h"
@@ -23,53 +24,49 @@ void dem_ball_columns_set(dem_ball_columns *columns, const dem_ball *balls, size
     }
 }
 
-// Which balls can be nearest or second nearest to a sample of a block of radius R about b: with t_i the distance of b
-// to ball i, those with t_i <= (second smallest t) + 2 R. A ball that moves by d changes t by at most d.
+// room for one more list
+static bool reserve_near(const dem_packing *p, dem_pack_chunk *chunk)
+{
+    size_t needed = chunk->near_count + p->columns.padded;
+    if (needed <= chunk->near_capacity)
+        return true;
+    size_t capacity = needed + needed / 2;
+    uint32_t *near = realloc(chunk->near, capacity * sizeof *near);
+    if (near)
+        chunk->near = near;
+    float *least = realloc(chunk->near_least, capacity * sizeof *least);
+    if (least)
+        chunk->near_least = least;
+    if (!near || !least)
+        return false;
+    chunk->near_capacity = capacity;
+    return true;
+}
+
 static void list_near(dem_packing *p, dem_pack_chunk *chunk)
 {
     chunk->near_count = 0;
-    for (size_t b = chunk->begin; b < chunk->end && !chunk->failed; b++) {
-        float smallest[2];
-        const dem_block_bound *bound = &p->samples.bounds[b];
-        p->kernels->distances(&p->columns, bound, chunk->distance, smallest);
-        float second = p->columns.count > 1 ? smallest[1] : smallest[0];
-        float limit = second + 2 * bound->radius + (float)p->near_slack;
-        p->near_begin[b] = chunk->near_count;
-        for (size_t i = 0; i < p->columns.count; i++) {
-            if (chunk->distance[i] > limit)
-                continue;
-            if (!dem_grow(&chunk->near, &chunk->near_capacity, chunk->near_count, sizeof *chunk->near)) {
-                chunk->failed = true;
-                return;
-            }
-            chunk->near[chunk->near_count++] = (uint32_t)i;
+    for (size_t b = chunk->begin; b < chunk->end; b++) {
+        if (!reserve_near(p, chunk)) {
+            chunk->failed = true;
+            return;
         }
-        p->near_size[b] = (uint32_t)(chunk->near_count - p->near_begin[b]);
+        size_t at = chunk->near_count;
+        p->near_begin[b] = at;
+        p->near_size[b] = (uint32_t)p->kernels->list_near(&p->columns, &p->samples.bounds[b], (float)p->near_slack,
+                                                          &chunk->work, chunk->near + at, chunk->near_least + at);
+        chunk->near_count += p->near_size[b];
     }
 }
 
-// those of the near list that can be nearest right now; `places` smallest distances are kept in reach
-static size_t cull_near(const dem_packing *p, dem_pack_chunk *chunk, size_t block, int places, uint32_t *list)
+static dem_near_list near_list(const dem_packing *p, const dem_pack_chunk *chunk, size_t block)
 {
-    const dem_block_bound *bound = &p->samples.bounds[block];
-    const uint32_t *near = chunk->near + p->near_begin[block];
-    const dem_ball_columns *c = &p->columns;
-    size_t size = p->near_size[block], count = 0;
-    float first = 1e9f, second = 1e9f;
-    for (size_t k = 0; k < size; k++) {
-        uint32_t i = near[k];
-        float dx = c->x[i] - bound->x, dy = c->y[i] - bound->y, dz = c->z[i] - bound->z;
-        float d = sqrtf(dx * dx + dy * dy + dz * dz) - c->r[i];
-        chunk->distance[k] = d;
-        float other = d < first ? first : d;
-        first = d < first ? d : first;
-        second = other < second ? other : second;
-    }
-    float limit = (places == 2 && size > 1 ? second : first) + 2 * bound->radius;
-    for (size_t k = 0; k < size; k++)
-        if (chunk->distance[k] <= limit)
-            list[count++] = near[k];
-    return count;
+    static const float rounding = 1e-6f;
+    size_t at = p->near_begin[block];
+    bool interior = block >= p->samples.surface_blocks;  // covered is covered
+    return (dem_near_list){.list = chunk->near + at, .least = chunk->near_least + at, .count = p->near_size[block],
+                           .reach = p->samples.bounds[block].radius + (float)p->near_moved + rounding,
+                           .enough = interior ? 0 : -INFINITY};
 }
 
 static dem_charge charge_of(const dem_packing *p, size_t block)
@@ -83,9 +80,9 @@ static void assign_chunk(dem_packing *p, dem_pack_chunk *chunk, dem_pack_state *
 {
     for (size_t b = chunk->begin; b < chunk->end; b++) {
         float *f = state->f + b * DEM_BLOCK;
-        size_t count = cull_near(p, chunk, b, 1, chunk->touched);
+        dem_near_list near = near_list(p, chunk, b);
         dem_charge charge = charge_of(p, b);
-        p->kernels->nearest(&p->samples.blocks[b], &p->columns, chunk->touched, count, f, state->owner + b * DEM_BLOCK);
+        p->kernels->nearest(&p->samples.blocks[b], &p->columns, &near, f, state->owner + b * DEM_BLOCK);
         state->block_energy[b] = p->kernels->energy(&p->samples.blocks[b], f, &charge);
     }
 }
@@ -105,21 +102,33 @@ static bool any_failed(const dem_packing *p)
     return false;
 }
 
+// what the crew shares: chunks of one state
+typedef struct shared {
+    dem_packing *p;
+    dem_pack_state *state;
+    bool make_lists;
+} shared;
+
+static void assign_part(void *user, int part)
+{
+    const shared *s = user;
+    dem_pack_chunk *chunk = &s->p->chunks[part];
+    if (s->make_lists)
+        list_near(s->p, chunk);
+    if (!chunk->failed)
+        assign_chunk(s->p, chunk, s->state);
+}
+
 static dem_status assign(dem_packing *p, dem_pack_state *state, bool make_lists, dem_error *error)
 {
     DEM_ASSERT(state->count > 0);
     dem_ball_columns_set(&p->columns, state->balls, state->count);
     if (make_lists) {
         p->near_slack = slack;
+        p->near_moved = 0;
         memcpy(p->near_at, state->balls, state->count * sizeof *p->near_at);
     }
-#pragma omp parallel for num_threads(p->threads) schedule(dynamic, 1) if (p->threads > 1)
-    for (int k = 0; k < DEM_CHUNKS; k++) {
-        if (make_lists)
-            list_near(p, &p->chunks[k]);
-        if (!p->chunks[k].failed)
-            assign_chunk(p, &p->chunks[k], state);
-    }
+    dem_crew_run(p->crew, DEM_CHUNKS, assign_part, &(shared){p, state, make_lists});
     if (any_failed(p))
         return dem_fail_memory(error);
     sum_energy(p, state);
@@ -138,6 +147,7 @@ dem_status dem_pack_assign_moved(dem_packing *p, dem_pack_state *state, dem_erro
         const dem_ball *now = &state->balls[i], *then = &p->near_at[i];
         farthest = fmax(farthest, v3_distance(now->centre, then->centre) + fabs(now->radius - then->radius));
     }
+    p->near_moved = farthest;
     return assign(p, state, 2 * farthest > p->near_slack * (1 - 1e-3), error);
 }
 
@@ -147,9 +157,9 @@ static void charge_removal(dem_packing *p, dem_pack_chunk *chunk, dem_pack_state
     for (size_t b = chunk->begin; b < chunk->end; b++) {
         const dem_sample_block *block = &p->samples.blocks[b];
         float *f = state->f + b * DEM_BLOCK, *rise = p->rise + b * DEM_BLOCK, now[DEM_BLOCK], then[DEM_BLOCK];
-        size_t count = cull_near(p, chunk, b, 2, chunk->touched);
+        dem_near_list near = near_list(p, chunk, b);
         dem_charge charge = charge_of(p, b);
-        p->kernels->nearest_two(block, &p->columns, chunk->touched, count, f, state->owner + b * DEM_BLOCK, then);
+        p->kernels->nearest_two(block, &p->columns, &near, f, state->owner + b * DEM_BLOCK, then);
         p->kernels->charges(block, then, &charge, rise);
         p->kernels->charges(block, f, &charge, now);
         for (int l = 0; l < DEM_BLOCK; l++)
@@ -157,12 +167,16 @@ static void charge_removal(dem_packing *p, dem_pack_chunk *chunk, dem_pack_state
     }
 }
 
+static void removal_part(void *user, int part)
+{
+    const shared *s = user;
+    charge_removal(s->p, &s->p->chunks[part], s->state);
+}
+
 dem_status dem_pack_removal_costs(dem_packing *p, dem_pack_state *state, dem_error *error)
 {
     DEM_TRY(assign(p, state, true, error));
-#pragma omp parallel for num_threads(p->threads) schedule(dynamic, 1) if (p->threads > 1)
-    for (int k = 0; k < DEM_CHUNKS; k++)
-        charge_removal(p, &p->chunks[k], state);
+    dem_crew_run(p->crew, DEM_CHUNKS, removal_part, &(shared){p, state, false});
     for (size_t i = 0; i < state->count; i++)
         p->cost[i] = 0;
     for (size_t i = 0; i < p->samples.block_count * DEM_BLOCK; i++)

@@ -105,7 +105,7 @@ void dem_pack_insert(dem_packing *p, dem_pack_state *state, size_t count)
 static dem_status try_breath(dem_packing *p, const dem_pack_state *state, bool *better, dem_error *error)
 {
     dem_pack_state *moved = &p->moved;
-    const dem_relax_options brief = {8, 0.02, 2e-4}, briefer = {4, 0.02, 2e-4}, test = {6, 0.02, 2e-4}, full = {20, 0.02, 2e-4};
+    const dem_relax_options brief = {6, 0.02, 2e-4}, briefer = {3, 0.02, 2e-4}, test = {5, 0.02, 2e-4}, full = {12, 0.02, 2e-4};
     double u = random_uniform(&p->random), v = random_uniform(&p->random);
     size_t target = state->count, count = 1 + (size_t)(u * v * 2 * largest_share * (double)target);
     *better = false;

@@ -33,8 +33,53 @@ static void distances(const dem_ball_columns *balls, const dem_block_bound *boun
     }
 }
 
-static void nearest(const dem_sample_block *restrict block, const dem_ball_columns *balls, const uint32_t *list,
-                    size_t count, float *restrict f, int32_t *restrict owner)
+static bool any_above(const float *restrict a, float limit)
+{
+    int32_t any = 0;
+    for (int l = 0; l < DEM_BLOCK; l++)
+        any |= a[l] > limit;
+    return any;
+}
+
+// Which balls can be nearest or second nearest to a sample of a block of radius R about b: with t_i the distance of b
+// to ball i, those with t_i <= (second smallest t) + 2 R. They are put into buckets by t, nearest first: few of them
+// are looked at before no other one can be nearer.
+static size_t list_near(const dem_ball_columns *balls, const dem_block_bound *bound, float slack,
+                        const dem_near_work *work, uint32_t *restrict list, float *restrict least)
+{
+    enum { BUCKETS = 32 };
+    float smallest[2], *restrict distance = work->distance;
+    uint32_t *restrict found = work->found, *restrict bucket = work->bucket, begin[BUCKETS + 1] = {0};
+    size_t count = 0;
+    distances(balls, bound, distance, smallest);
+    float second = balls->count > 1 ? smallest[1] : smallest[0], limit = second + 2 * bound->radius + slack;
+    float per_bucket = BUCKETS / (limit - smallest[0]);
+    for (size_t i = 0; i < balls->padded; i += DEM_LANES) {
+        uint32_t within = 0;
+        for (int l = 0; l < DEM_LANES; l++)
+            within |= (uint32_t)(distance[i + (size_t)l] <= limit) << l;
+        for (; within; within &= within - 1) {
+            uint32_t ball = (uint32_t)i + (uint32_t)__builtin_ctz(within);
+            int32_t k = (int32_t)((distance[ball] - smallest[0]) * per_bucket);
+            bucket[count] = k < BUCKETS ? (uint32_t)k : BUCKETS - 1;
+            begin[bucket[count] + 1]++;
+            found[count++] = ball;
+        }
+    }
+    for (int k = 0; k < BUCKETS; k++)
+        begin[k + 1] += begin[k];
+    for (size_t k = 0; k < count; k++) {
+        uint32_t at = begin[bucket[k]]++;
+        list[at] = found[k];
+        least[at] = distance[found[k]];
+    }
+    for (size_t k = count; k-- > 1;)
+        least[k - 1] = least[k] < least[k - 1] ? least[k] : least[k - 1];
+    return count;
+}
+
+static void nearest(const dem_sample_block *restrict block, const dem_ball_columns *balls, const dem_near_list *near,
+                    float *restrict f, int32_t *restrict owner)
 {
     float best[DEM_BLOCK];
     int32_t who[DEM_BLOCK];
@@ -42,8 +87,11 @@ static void nearest(const dem_sample_block *restrict block, const dem_ball_colum
         best[l] = nowhere;
         who[l] = -1;
     }
-    for (size_t k = 0; k < count; k++) {
-        uint32_t i = list[k];
+    for (size_t k = 0; k < near->count; k++) {
+        float farther = near->least[k] - near->reach, limit = farther > near->enough ? farther : near->enough;
+        if (k > 0 && !any_above(best, limit))
+            break;
+        uint32_t i = near->list[k];
         int32_t id = (int32_t)i;
         float x = balls->x[i], y = balls->y[i], z = balls->z[i], r = balls->r[i];
         for (int l = 0; l < DEM_BLOCK; l++) {
@@ -59,15 +107,18 @@ static void nearest(const dem_sample_block *restrict block, const dem_ball_colum
     }
 }
 
-static void nearest_two(const dem_sample_block *restrict block, const dem_ball_columns *balls, const uint32_t *list,
-                        size_t count, float *restrict f, int32_t *restrict owner, float *restrict second)
+static void nearest_two(const dem_sample_block *restrict block, const dem_ball_columns *balls,
+                        const dem_near_list *near, float *restrict f, int32_t *restrict owner, float *restrict second)
 {
     for (int l = 0; l < DEM_BLOCK; l++) {
         f[l] = second[l] = nowhere;
         owner[l] = -1;
     }
-    for (size_t k = 0; k < count; k++) {
-        uint32_t i = list[k];
+    for (size_t k = 0; k < near->count; k++) {
+        float farther = near->least[k] - near->reach, limit = farther > near->enough ? farther : near->enough;
+        if (k > 1 && !any_above(second, limit))
+            break;
+        uint32_t i = near->list[k];
         int32_t id = (int32_t)i;
         float x = balls->x[i], y = balls->y[i], z = balls->z[i], r = balls->r[i];
         for (int l = 0; l < DEM_BLOCK; l++) {
@@ -79,6 +130,21 @@ static void nearest_two(const dem_sample_block *restrict block, const dem_ball_c
             second[l] = other < second[l] ? other : second[l];
         }
     }
+}
+
+static size_t owners_of(const int32_t *restrict owner, uint32_t *restrict owners)
+{
+    uint32_t left = ~(uint32_t)0;
+    size_t count = 0;
+    while (left) {
+        int32_t id = owner[__builtin_ctz(left)];
+        uint32_t same = 0;
+        for (int l = 0; l < DEM_BLOCK; l++)
+            same |= (uint32_t)(owner[l] == id) << l;
+        owners[count++] = (uint32_t)id;
+        left &= ~same;
+    }
+    return count;
 }
 
 // lanes are halved until one is left: the same order everywhere
@@ -312,17 +378,6 @@ static strip_ball strip_view(const dem_ball_columns *balls, int axis, uint32_t i
     return (strip_ball){u, v, at[axis][i], r * r - v * v};
 }
 
-// the interval of one ball on each line of a strip; empty ones are inside out and far away
-static void strip_ends(strip_ball ball, float step, float *restrict from, float *restrict to)
-{
-    for (int l = 0; l < DEM_LINE_LANES; l++) {
-        float off = (float)l * step - ball.u, rest = ball.reach2 - off * off;
-        float half = sqrtf(rest > 0 ? rest : 0);
-        from[l] = rest > 0 ? ball.w - half : nowhere;
-        to[l] = rest > 0 ? ball.w + half : -nowhere;
-    }
-}
-
 /// One end of the union on each line of a strip, and whose end it is (an index into the strip's balls).
 typedef struct strip_front {
     float at[DEM_LINE_LANES];
@@ -337,56 +392,86 @@ static bool any_below(const float *restrict a, float limit)
     return any;
 }
 
-// the lowest begin of an interval beyond `passed`
-static bool next_begin(const dem_line_task *task, size_t count, const float *restrict passed,
+// The interval of one ball on each line of a strip; empty ones are inside out and far away. Lowers `begin` to where it
+// begins.
+static void strip_ends(strip_ball ball, int32_t who, float step, float *restrict from, float *restrict to,
                        strip_front *restrict begin)
+{
+    for (int l = 0; l < DEM_LINE_LANES; l++) {
+        float off = (float)l * step - ball.u, rest = ball.reach2 - off * off;
+        float half = sqrtf(rest > 0 ? rest : 0);
+        from[l] = rest > 0 ? ball.w - half : nowhere;
+        to[l] = rest > 0 ? ball.w + half : -nowhere;
+        begin->ball[l] = from[l] < begin->at[l] ? who : begin->ball[l];
+        begin->at[l] = from[l] < begin->at[l] ? from[l] : begin->at[l];
+    }
+}
+
+static void front_nowhere(strip_front *front)
+{
+    for (int l = 0; l < DEM_LINE_LANES; l++) {
+        front->at[l] = nowhere;
+        front->ball[l] = 0;
+    }
+}
+
+// moves the end of the union's interval on as far as the balls reach, seen in their order
+static void move_end(const dem_line_task *task, size_t count, strip_front *restrict end)
 {
     float at[DEM_LINE_LANES];
     int32_t ball[DEM_LINE_LANES];
+    memcpy(at, end->at, sizeof at);
+    memcpy(ball, end->ball, sizeof ball);
+    for (size_t j = 0; j < count; j++) {
+        const float *restrict from = task->from[j], *restrict to = task->to[j];
+        int32_t who = (int32_t)j;
+        for (int l = 0; l < DEM_LINE_LANES; l++) {
+            float t = from[l] <= at[l] ? to[l] : -nowhere;
+            ball[l] = t > at[l] ? who : ball[l];
+            at[l] = t > at[l] ? t : at[l];
+        }
+    }
+    memcpy(end->at, at, sizeof at);
+    memcpy(end->ball, ball, sizeof ball);
+}
+
+// the lowest begin of an interval beyond `end`; false: it is not the end, a ball goes on from there
+static bool next_begin(const dem_line_task *task, size_t count, const strip_front *restrict end,
+                       strip_front *restrict begin)
+{
+    float at[DEM_LINE_LANES], passed[DEM_LINE_LANES];
+    int32_t ball[DEM_LINE_LANES], on[DEM_LINE_LANES], any = 0;
+    memcpy(passed, end->at, sizeof passed);
     for (int l = 0; l < DEM_LINE_LANES; l++) {
         at[l] = nowhere;
-        ball[l] = 0;
+        ball[l] = on[l] = 0;
     }
     for (size_t j = 0; j < count; j++) {
-        const float *restrict from = task->from[j];
+        const float *restrict from = task->from[j], *restrict to = task->to[j];
         int32_t who = (int32_t)j;
         for (int l = 0; l < DEM_LINE_LANES; l++) {
             float f = from[l] > passed[l] ? from[l] : nowhere;
+            on[l] |= (from[l] <= passed[l]) & (to[l] > passed[l]);
             ball[l] = f < at[l] ? who : ball[l];
             at[l] = f < at[l] ? f : at[l];
         }
     }
+    for (int l = 0; l < DEM_LINE_LANES; l++)
+        any |= on[l];
     memcpy(begin->at, at, sizeof at);
     memcpy(begin->ball, ball, sizeof ball);
-    return any_below(at, nowhere);
+    return !any;
 }
 
-// The end of the union's interval that begins at `begin`. Balls come by their centres along the lines, so one pass
-// reaches it nearly always, and a second one finds nothing.
-static void find_end(const dem_line_task *task, size_t count, const strip_front *begin, strip_front *restrict end)
+// The end of the union's interval that begins at `begin`, and where the next one begins. Balls come by their centres
+// along the lines, so one pass reaches the end nearly always.
+static void find_end(const dem_line_task *task, size_t count, const strip_front *begin, strip_front *restrict end,
+                     strip_front *restrict next)
 {
-    float at[DEM_LINE_LANES];
-    int32_t ball[DEM_LINE_LANES], moved;
-    memcpy(at, begin->at, sizeof at);
-    memcpy(ball, begin->ball, sizeof ball);
-    do {
-        float before[DEM_LINE_LANES];
-        memcpy(before, at, sizeof at);
-        for (size_t j = 0; j < count; j++) {
-            const float *restrict from = task->from[j], *restrict to = task->to[j];
-            int32_t who = (int32_t)j;
-            for (int l = 0; l < DEM_LINE_LANES; l++) {
-                float t = from[l] <= at[l] ? to[l] : -nowhere;
-                ball[l] = t > at[l] ? who : ball[l];
-                at[l] = t > at[l] ? t : at[l];
-            }
-        }
-        moved = 0;
-        for (int l = 0; l < DEM_LINE_LANES; l++)
-            moved |= before[l] != at[l];
-    } while (moved);
-    memcpy(end->at, at, sizeof at);
-    memcpy(end->ball, ball, sizeof ball);
+    *end = *begin;
+    do
+        move_end(task, count, end);
+    while (!next_begin(task, count, end, next));
 }
 
 /// Ends against the grain: the length of the line inside it before the end, and whether the end itself is.
@@ -452,23 +537,20 @@ typedef struct strip_sums {
 static void add_strip(const strip_place *place, strip_sums *restrict sums, bool gradient)
 {
     const dem_line_task *task = place->task;
-    float passed[DEM_LINE_LANES];
-    strip_front begin, end;
+    strip_front begin, end, next;
+    front_nowhere(&begin);
     for (size_t k = 0; k < place->count; k++) {
         strip_ball ball = strip_view(place->balls, task->field->axis, place->list[k], place->x, place->y);
-        strip_ends(ball, task->field->step, task->from[k], task->to[k]);
+        strip_ends(ball, (int32_t)k, task->field->step, task->from[k], task->to[k], &begin);
     }
-    for (int l = 0; l < DEM_LINE_LANES; l++)
-        passed[l] = -nowhere;
-    while (next_begin(task, place->count, passed, &begin)) {
+    for (; any_below(begin.at, nowhere); begin = next) {
         strip_inside low, high;
-        find_end(task, place->count, &begin, &end);
+        find_end(task, place->count, &begin, &end, &next);
         compare_spans(task->field, place->strip, begin.at, &low);
         compare_spans(task->field, place->strip, end.at, &high);
         for (int l = 0; l < DEM_LINE_LANES; l++) {
             sums->covered[l] += end.at[l] - begin.at[l];
             sums->common[l] += high.before[l] - low.before[l];
-            passed[l] = end.at[l];
         }
         if (gradient) {
             add_sums(place, &begin, &low);
@@ -503,9 +585,10 @@ static void lines(const dem_ball_columns *balls, dem_line_task *task, bool gradi
 }
 
 const dem_pack_kernels DEM_LEVEL_OF(dem_pack_kernels) = {
-    .distances = distances,
+    .list_near = list_near,
     .nearest = nearest,
     .nearest_two = nearest_two,
+    .owners_of = owners_of,
     .charges = charges,
     .energy = energy,
     .with_ball = with_ball,

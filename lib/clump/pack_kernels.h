@@ -58,15 +58,34 @@ typedef struct dem_line_task {
     bool failed;             ///< out of memory
 } dem_line_task;
 
+/// Work space of `list_near`: [padded balls].
+typedef struct dem_near_work {
+    float *distance;
+    uint32_t *found, *bucket;
+} dem_near_work;
+
+/// The balls near a block, as `list_near` left them, or a little later.
+typedef struct dem_near_list {
+    const uint32_t *list;
+    const float *least;  ///< [count] no ball from here on was nearer to the block's centre
+    size_t count;
+    float reach;         ///< radius of the block, and what balls may have come nearer since
+    float enough;        ///< it is not asked how far below this f is
+} dem_near_list;
+
 typedef struct dem_pack_kernels {
-    /// Distance of the bound's centre to each ball (padded), and the two smallest.
-    void (*distances)(const dem_ball_columns *balls, const dem_block_bound *bound, float *distance, float smallest[2]);
-    /// Nearest of the listed balls for each sample: f and owner. The distances are those of `distances` for the list.
-    void (*nearest)(const dem_sample_block *block, const dem_ball_columns *balls, const uint32_t *list, size_t count,
-                    float *f, int32_t *owner);
-    /// The same and the second-nearest distance.
-    void (*nearest_two)(const dem_sample_block *block, const dem_ball_columns *balls, const uint32_t *list,
-                        size_t count, float *f, int32_t *owner, float *second);
+    /// Lists the balls that are nearest or second nearest to some place in the bound while none moves by more than half
+    /// of `slack`, roughly by their distances; `list` and `least` have room for all, padded. Returns their number.
+    size_t (*list_near)(const dem_ball_columns *balls, const dem_block_bound *bound, float slack,
+                        const dem_near_work *work, uint32_t *list, float *least);
+    /// Nearest of the listed balls for each sample: f and owner.
+    void (*nearest)(const dem_sample_block *block, const dem_ball_columns *balls, const dem_near_list *near, float *f,
+                    int32_t *owner);
+    /// The same and the second-nearest distance, for which `enough` is meant here.
+    void (*nearest_two)(const dem_sample_block *block, const dem_ball_columns *balls, const dem_near_list *near,
+                        float *f, int32_t *owner, float *second);
+    /// The owners of a block's samples, each once; room for DEM_BLOCK. Returns their number.
+    size_t (*owners_of)(const int32_t *owner, uint32_t *owners);
     /// What each sample is charged, and the sum.
     void (*charges)(const dem_sample_block *block, const float *f, const dem_charge *charge, float *charges);
     float (*energy)(const dem_sample_block *block, const float *f, const dem_charge *charge);

@@ -113,9 +113,9 @@ static dem_status take_work_space(dem_lines *lines, dem_error *error)
 }
 
 dem_status dem_lines_build(const dem_pack_grain *grain, const dem_pack_kernels *kernels, double step,
-                           const double offsets[2], size_t capacity, int threads, dem_lines *lines, dem_error *error)
+                           const double offsets[2], size_t capacity, dem_crew *crew, dem_lines *lines, dem_error *error)
 {
-    *lines = (dem_lines){.kernels = kernels, .capacity = capacity, .threads = threads,
+    *lines = (dem_lines){.kernels = kernels, .capacity = capacity, .crew = crew,
                          .uncovered = 1, .protruding = 1};
     dem_status status = DEM_OK;
     for (int axis = 0; axis < 3 && status == DEM_OK; axis++) {
@@ -246,14 +246,25 @@ static void run_task(const dem_lines *lines, const dem_ball_columns *balls, dem_
         lines->kernels->lines(balls, task, gradient);
 }
 
+// what the crew shares
+typedef struct shared {
+    dem_lines *lines;
+    const dem_ball_columns *balls;
+    bool gradient;
+} shared;
+
+static void run_part(void *user, int part)
+{
+    const shared *s = user;
+    run_task(s->lines, s->balls, &s->lines->tasks[part], s->gradient);
+}
+
 dem_status dem_lines_measure(dem_lines *lines, const dem_ball_columns *balls, double (*gradient)[4],
                              dem_line_volumes *volumes, dem_error *error)
 {
     DEM_ASSERT(balls->count <= lines->capacity);
     set_order(lines, balls);
-#pragma omp parallel for num_threads(lines->threads) schedule(dynamic, 1) if (lines->threads > 1)
-    for (int k = 0; k < DEM_LINE_TASKS; k++)
-        run_task(lines, balls, &lines->tasks[k], gradient != NULL);
+    dem_crew_run(lines->crew, DEM_LINE_TASKS, run_part, &(shared){lines, balls, gradient != NULL});
     for (size_t i = 0; i < balls->count && gradient; i++)
         gradient[i][0] = gradient[i][1] = gradient[i][2] = gradient[i][3] = 0;
     double grain = lines->grain_length[0] + lines->grain_length[1] + lines->grain_length[2], covered = 0, common = 0;

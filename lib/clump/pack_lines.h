@@ -2,6 +2,7 @@
 #ifndef DEM_CLUMP_PACK_LINES_H
 #define DEM_CLUMP_PACK_LINES_H
 
+#include "base/crew.h"
 #include "clump/pack_kernels.h"
 
 enum { DEM_LINE_TASKS = 12 };
@@ -22,7 +23,7 @@ typedef struct dem_lines {
     const dem_pack_kernels *kernels;
     size_t capacity;             ///< most balls
     double uncovered, protruding;  ///< weights of the two parts of the difference; 1 unless set otherwise
-    int threads;
+    dem_crew *crew;              ///< NULL: alone
 } dem_lines;
 
 typedef struct dem_line_volumes {
@@ -33,7 +34,7 @@ typedef struct dem_line_volumes {
 
 /// `step` between lines [d_eq]; `offsets` place the grids, in steps.
 dem_status dem_lines_build(const dem_pack_grain *grain, const dem_pack_kernels *kernels, double step,
-                           const double offsets[2], size_t capacity, int threads, dem_lines *lines, dem_error *error);
+                           const double offsets[2], size_t capacity, dem_crew *crew, dem_lines *lines, dem_error *error);
 void dem_lines_release(dem_lines *lines);
 
 /// `gradient` of the symmetric difference to (x, y, z, r) of each ball; NULL: not wanted.

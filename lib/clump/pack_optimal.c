@@ -70,6 +70,9 @@ static dem_status pack_count(const dem_ctx *ctx, const dem_pack_grain *grain, co
     dem_status status = run_stages(&run, error);
     if (status == DEM_OK)
         status = hand_over(&run, pack, error);
+    dem_laps_end(&run.p.laps, "settling");
+    if (status == DEM_OK)
+        dem_laps_log(&run.p.laps, ctx, "packing");
     dem_pack_stages_close(&run);
     return status;
 }

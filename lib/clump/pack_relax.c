@@ -9,33 +9,20 @@
 static const double least_damping = 1e-4, most_damping = 50;
 static const double longest_step = 0.3;  // of the ball's radius
 
-// the owners of a block's samples, each once, with a slot for its equations
-static size_t open_slots(dem_pack_chunk *chunk, const int32_t *owner, uint32_t owners[DEM_BLOCK])
+// a slot for the equations of each of a block's owners
+static bool open_slots(dem_pack_chunk *chunk, const uint32_t *owners, size_t count)
 {
-    size_t count = 0;
-    int32_t last = -1;
-    for (int l = 0; l < DEM_BLOCK; l++) {
-        int32_t i = owner[l];
-        if (i == last)
-            continue;
-        last = i;
-        bool known = false;
-        for (size_t k = 0; k < count && !known; k++)
-            known = owners[k] == (uint32_t)i;
-        if (known)
-            continue;
-        owners[count++] = (uint32_t)i;
+    for (size_t k = 0; k < count; k++) {
+        uint32_t i = owners[k];
         if (chunk->slot[i] >= 0)
             continue;
-        if (!dem_grow(&chunk->lanes, &chunk->lane_capacity, chunk->touched_count, sizeof *chunk->lanes)) {
-            chunk->failed = true;
-            return 0;
-        }
+        if (!dem_grow(&chunk->lanes, &chunk->lane_capacity, chunk->touched_count, sizeof *chunk->lanes))
+            return false;
         chunk->slot[i] = (int32_t)chunk->touched_count;
         chunk->lanes[chunk->touched_count] = (dem_equation_lanes){0};
-        chunk->touched[chunk->touched_count++] = (uint32_t)i;
+        chunk->touched[chunk->touched_count++] = i;
     }
-    return count;
+    return true;
 }
 
 static void add_equations(dem_packing *p, dem_pack_chunk *chunk, const dem_pack_state *state)
@@ -48,7 +35,11 @@ static void add_equations(dem_packing *p, dem_pack_chunk *chunk, const dem_pack_
         const int32_t *owner = state->owner + b * DEM_BLOCK;
         uint32_t owners[DEM_BLOCK];
         dem_equation_lanes *slots[DEM_BLOCK];
-        size_t count = open_slots(chunk, owner, owners);
+        size_t count = p->kernels->owners_of(owner, owners);
+        if (!open_slots(chunk, owners, count)) {
+            chunk->failed = true;
+            return;
+        }
         for (size_t k = 0; k < count; k++)
             slots[k] = &chunk->lanes[chunk->slot[owners[k]]];
         dem_charge charge = p->charge;
@@ -72,14 +63,24 @@ static void sum_equations(dem_packing *p, dem_pack_chunk *chunk)
     }
 }
 
+// what the crew shares: chunks of one state
+typedef struct shared {
+    dem_packing *p;
+    const dem_pack_state *state;
+} shared;
+
+static void equations_part(void *user, int part)
+{
+    const shared *s = user;
+    add_equations(s->p, &s->p->chunks[part], s->state);
+}
+
 static dem_status assemble(dem_packing *p, const dem_pack_state *state, dem_error *error)
 {
     for (size_t i = 0; i < state->count; i++)
         for (int q = 0; q < DEM_EQUATION; q++)
             p->equations[i][q] = 0;
-#pragma omp parallel for num_threads(p->threads) schedule(dynamic, 1) if (p->threads > 1)
-    for (int k = 0; k < DEM_CHUNKS; k++)
-        add_equations(p, &p->chunks[k], state);
+    dem_crew_run(p->crew, DEM_CHUNKS, equations_part, &(shared){p, state});
     bool failed = false;
     for (int k = 0; k < DEM_CHUNKS; k++) {
         sum_equations(p, &p->chunks[k]);

@@ -24,6 +24,8 @@ static const double exact_residual = 1e-9;     // moments met
 static const double least_exposed = 1e-9;      // of a ball's own surface, for it to add anything
 static const double line_offsets[2] = {0.38197, 0.2764};    // generic place of the lines, in steps
 
+static const double rough_step = 2;                       // of the rough lines, in steps of the others
+
 // between lines [d_eq]: so many lines of each axis per ball, in bounds
 static double line_step(const dem_pack_grain *grain, double density, size_t balls)
 {
@@ -31,6 +33,16 @@ static double line_step(const dem_pack_grain *grain, double density, size_t ball
     double shadow = grain->area / 4;   // mean over directions, of a convex grain (Cauchy)
     double step = fmin(widest, fmax(narrowest, sqrt(shadow / (density * (double)balls))));
     return fmax(step, sqrt(shadow / most_lines));
+}
+
+static dem_status build_lines(dem_pack_stages *run, dem_error *error)
+{
+    const dem_packing *p = &run->p;
+    double step = line_step(p->grain, p->effort.line_density, p->options->spheres);
+    DEM_TRY(dem_lines_build(p->grain, p->kernels, step, line_offsets, p->capacity, p->crew, &run->lines, error));
+    if (p->options->moments == DEM_MOMENTS_FREE)
+        return DEM_OK;
+    return dem_lines_build(p->grain, p->kernels, rough_step * step, line_offsets, p->capacity, p->crew, &run->rough, error);
 }
 
 dem_status dem_pack_stages_open(const dem_ctx *ctx, const dem_pack_grain *grain, const dem_pack_options *options,
@@ -45,16 +57,17 @@ dem_status dem_pack_stages_open(const dem_ctx *ctx, const dem_pack_grain *grain,
     if (status == DEM_OK)
         status = dem_moment_rows_init(p, &run->spare_rows, error);
     if (status == DEM_OK)
-        status = dem_lines_build(grain, p->kernels, line_step(grain, p->effort.line_density, options->spheres),
-                                 line_offsets, p->capacity, p->threads, &run->lines, error);
+        status = build_lines(run, error);
     if (status != DEM_OK)
         dem_pack_stages_close(run);
+    dem_laps_end(&p->laps, "lines");
     return status;
 }
 
 void dem_pack_stages_close(dem_pack_stages *run)
 {
     dem_lines_release(&run->lines);
+    dem_lines_release(&run->rough);
     dem_packing_close(&run->p);
 }
 
@@ -98,19 +111,22 @@ dem_status dem_pack_place(dem_pack_stages *run, dem_error *error)
     dem_pack_stage(p, placed);
     DEM_TRY(dem_pack_go_on(p, error));
     DEM_TRY(dem_candidates_greedy(&p->candidates, &p->lattice, p->kernels, p->inflations, p->inflation_count,
-                                  START_FACTOR * wanted, p->threads, state->balls, &state->count, error));
+                                  START_FACTOR * wanted, dem_threads(p->ctx), state->balls, &state->count, error));
+    dem_laps_end(&p->laps, "choice");
     for (size_t i = 0; i < state->count; i++)
         state->clearances[i].distance = -1;
     if (state->count == 0)
         dem_pack_state_add(state, plain_ball(p));
     DEM_TRY(dem_pack_relax(p, state, (dem_relax_options){15, 0.02, 2e-5}, error));
     DEM_TRY(dem_pack_resize(run, wanted, error));
+    dem_laps_end(&p->laps, "pruning");
     dem_pack_stage(p, breathed);
     DEM_TRY(dem_pack_assign(p, state, error));
     for (int k = 0; k < p->effort.breaths; k++) {
         DEM_TRY(dem_pack_progress(p, (double)k / p->effort.breaths, error));
         DEM_TRY(dem_pack_breathe(p, state, error));
     }
+    dem_laps_end(&p->laps, "breathing");
     return DEM_OK;
 }
 
@@ -120,13 +136,13 @@ dem_status dem_pack_measure(dem_pack_stages *run, dem_error *error)
     return dem_lines_measure(&run->lines, &run->p.columns, NULL, &run->volumes, error);
 }
 
-static dem_status polish(dem_pack_stages *run, size_t tangent_count, dem_error *error)
+static dem_status polish(dem_pack_stages *run, dem_lines *lines, size_t tangent_count, dem_error *error)
 {
     dem_polish_options options = {.iterations = run->p.effort.polish_steps, .tolerance = run->p.effort.polish_tolerance,
                                   .tangent_count = tangent_count};
     for (size_t k = 0; k < tangent_count; k++)
         options.tangent[k] = run->rows.rows[k];
-    return dem_pack_polish(&run->p, &run->lines, &run->state, options, &run->volumes, error);
+    return dem_pack_polish(&run->p, lines, &run->state, options, &run->volumes, error);
 }
 
 // removes balls without exposed surface
@@ -153,19 +169,24 @@ dem_status dem_pack_fit(dem_pack_stages *run, dem_error *error)
 {
     enum { RESPENDINGS = 2 };
     dem_packing *p = &run->p;
+    // where the moments are kept, descent goes on along them
+    dem_lines *lines = p->options->moments == DEM_MOMENTS_FREE ? &run->lines : &run->rough;
     p->charge.linear = true;
     dem_pack_stage(p, fitted);
     DEM_TRY(dem_pack_relax(p, &run->state, settle_linear, error));
     DEM_TRY(dem_pack_join(p, &run->state, error));
-    DEM_TRY(polish(run, 0, error));
+    DEM_TRY(polish(run, lines, 0, error));
     for (int k = 0; k < RESPENDINGS; k++) {
         size_t dropped, wanted = run->state.count;
         DEM_TRY(drop_hidden(run, &dropped, error));
         if (!dropped)
             break;
         DEM_TRY(dem_pack_resize(run, wanted, error));
-        DEM_TRY(polish(run, 0, error));
+        DEM_TRY(polish(run, lines, 0, error));
     }
+    if (lines != &run->lines)
+        DEM_TRY(dem_pack_measure(run, error));
+    dem_laps_end(&p->laps, "fit");
     return DEM_OK;
 }
 
@@ -186,7 +207,7 @@ static dem_status project(dem_pack_stages *run, size_t kept, size_t tangent, boo
         if (!*met || k + 1 == PROJECTIONS)
             break;
         DEM_TRY(dem_moment_rows_set(p, &run->state, tangent, &run->rows, error));
-        DEM_TRY(polish(run, tangent, error));
+        DEM_TRY(polish(run, &run->lines, tangent, error));
     }
     return DEM_OK;
 }
@@ -221,7 +242,10 @@ static dem_status meet_moments(dem_pack_stages *run, dem_error *error)
 dem_status dem_pack_keep_moments(dem_pack_stages *run, dem_error *error)
 {
     dem_pack_stage(&run->p, kept_moments);
-    return run->p.options->moments == DEM_MOMENTS_FREE ? DEM_OK : meet_moments(run, error);
+    if (run->p.options->moments != DEM_MOMENTS_FREE)
+        DEM_TRY(meet_moments(run, error));
+    dem_laps_end(&run->p.laps, "moments");
+    return DEM_OK;
 }
 
 static size_t moments_of(dem_moments_kept kept)

@@ -10,6 +10,7 @@ typedef struct dem_pack_stages {
     dem_packing p;
     dem_pack_state state;
     dem_lines lines;
+    dem_lines rough;            ///< fewer of them, for what is looked at again with all; none where nothing is
     dem_line_volumes volumes;   ///< of the state, as the lines see them
     dem_moment_rows rows, spare_rows;
     dem_moments_kept met;

@@ -5,34 +5,32 @@
 
 // Samples: at least 100 per sphere or the spheres fit the samples instead of the surface; twice as many spheres as
 // asked for are under way at first.
-enum { FEWEST_SAMPLES = 8192, MOST_SAMPLES = 65536, BASE_SAMPLES = 4096, SAMPLES_PER_SPHERE = 100 };
-enum { FEWEST_FOR_THREADS = 300 };  // with fewer spheres threads wait for each other longer than they work
+enum { FEWEST_SAMPLES = 6144, MOST_SAMPLES = 65536, BASE_SAMPLES = 4096, SAMPLES_PER_SPHERE = 100 };
 enum { OUTER_SAMPLES = 4 };     // times as many where none may stay uncovered, nor what lies between them
-enum { INTERIOR_SAMPLES = 4096 };
+enum { FEWEST_INTERIOR = 2048, INTERIOR_PER_SPHERE = 10, MOST_INTERIOR = 4096 };
 enum { FEWEST_POINTS = 8000, POINTS_PER_SPHERE = 150 };    // of the lattice
-// below so many balls a pass takes well under a millisecond and waiting for a second thread costs more than it
-// gains, on a busy machine a hundred times more
-enum { THREADED_SPHERES = 300 };
 enum { FEWEST_CANDIDATES = 3000, CANDIDATES_PER_SPHERE = 3 };
 
 static const double softening = 0.0015;  // below this depth a sample's charge turns from |f|^p to f^2 [d_eq]
 
-// One breath costs about as much as the balls it relaxes: their number goes down as that of the balls goes up.
+// A breath costs about as much as the balls it relaxes, and where there are many of them hardly one is in vain: their
+// number goes down as that of the balls goes up, but not as fast.
+static const double fewer_breaths = 0.65;  // power of the number of balls
+
 static dem_pack_effort effort_for(dem_effort effort, size_t balls)
 {
     static const struct {
         dem_pack_effort each;
-        double breathing;    // breaths times balls
-        int most_breaths;
+        double breaths;      // with 50 balls
+        double most_breaths;
     } levels[] = {
-        [DEM_EFFORT_FAST] = {{.prune_share = 0.06, .prune_iterations = 6, .polish_steps = 15, .polish_tolerance = 2e-3, .line_density = 25}, 1000, 50},
-        [DEM_EFFORT_DEFAULT] = {{.prune_share = 0.03, .prune_iterations = 8, .polish_steps = 80, .polish_tolerance = 3e-4, .line_density = 40}, 5000, 250},
-        [DEM_EFFORT_BEST] = {{.prune_share = 0.03, .prune_iterations = 8, .polish_steps = 200, .polish_tolerance = 5e-5, .line_density = 60}, 60000, 2000},
+        [DEM_EFFORT_FAST] = {{.prune_share = 0.06, .prune_iterations = 6, .polish_steps = 15, .polish_tolerance = 2e-3, .line_density = 25}, 18, 50},
+        [DEM_EFFORT_DEFAULT] = {{.prune_share = 0.05, .prune_iterations = 7, .polish_steps = 80, .polish_tolerance = 5e-4, .line_density = 40}, 55, 250},
+        [DEM_EFFORT_BEST] = {{.prune_share = 0.03, .prune_iterations = 8, .polish_steps = 200, .polish_tolerance = 5e-5, .line_density = 60}, 1200, 2000},
     };
     dem_pack_effort bought = levels[effort].each;
-    bought.breaths = (int)(levels[effort].breathing / (double)balls);
-    if (bought.breaths > levels[effort].most_breaths)
-        bought.breaths = levels[effort].most_breaths;
+    bought.breaths = (int)fmin(levels[effort].breaths * pow(50 / (double)balls, fewer_breaths),
+                               levels[effort].most_breaths);
     return bought;
 }
 
@@ -73,7 +71,9 @@ static dem_status take_work_space(dem_packing *p, dem_error *error)
     take_columns(p, &p->tree_columns, padded);
     for (int k = 0; k < DEM_CHUNKS; k++) {
         dem_pack_chunk *chunk = &p->chunks[k];
-        chunk->distance = dem_arena_take(&p->arena, padded, sizeof *chunk->distance);
+        chunk->work.distance = dem_arena_take(&p->arena, padded, sizeof *chunk->work.distance);
+        chunk->work.found = dem_arena_take(&p->arena, padded, sizeof *chunk->work.found);
+        chunk->work.bucket = dem_arena_take(&p->arena, padded, sizeof *chunk->work.bucket);
         chunk->slot = dem_arena_take(&p->arena, n, sizeof *chunk->slot);
         chunk->touched = dem_arena_take(&p->arena, n, sizeof *chunk->touched);
         for (size_t i = 0; chunk->slot && i < n; i++)
@@ -101,7 +101,7 @@ dem_status dem_packing_open(const dem_ctx *ctx, const dem_pack_grain *grain, con
                             const dem_pack_kernels *kernels, dem_packing *p, dem_error *error)
 {
     size_t n = options->spheres;
-    *p = (dem_packing){.ctx = ctx, .options = options, .grain = grain, .threads = dem_threads(ctx),
+    *p = (dem_packing){.ctx = ctx, .options = options, .grain = grain,
                        .kernels = kernels ? kernels : dem_pack_kernels_choose(NULL),
                        .random = random_stream(options->seed, 0), .connected = true, .effort = effort_for(options->effort, n), .stiffness = 0.5,
                        .charge = {.softening = (float)(softening * softening / 4), .inside = 1, .outside = 1}};
@@ -110,18 +110,21 @@ dem_status dem_packing_open(const dem_ctx *ctx, const dem_pack_grain *grain, con
         surface *= OUTER_SAMPLES;
     if (surface > MOST_SAMPLES)
         surface = MOST_SAMPLES;
+    size_t interior = FEWEST_INTERIOR + INTERIOR_PER_SPHERE * n;
+    if (interior > MOST_INTERIOR)
+        interior = MOST_INTERIOR;
     p->capacity = 2 * n + 64;
+    dem_laps_begin(&p->laps);
     dem_status status = dem_lattice_build(grain, at_least(FEWEST_POINTS, POINTS_PER_SPHERE * n), &p->lattice, error);
     if (status == DEM_OK)
-        status = dem_samples_build(grain, &p->lattice, surface, INTERIOR_SAMPLES, &p->samples, error);
+        status = dem_samples_build(grain, &p->lattice, surface, interior, &p->samples, error);
+    dem_laps_end(&p->laps, "samples");
     if (status == DEM_OK)
         status = dem_candidates_build(grain, &p->samples, at_least(FEWEST_CANDIDATES, CANDIDATES_PER_SPHERE * n),
-                                      p->threads, &p->candidates, error);
-    if (n < FEWEST_FOR_THREADS)
-        p->threads = 1;
+                                      dem_threads(ctx), &p->candidates, error);
+    dem_laps_end(&p->laps, "candidates");
     if (status == DEM_OK) {
-        if (n < THREADED_SPHERES)
-            p->threads = 1;
+        p->crew = dem_crew_create(dem_threads(ctx));
         split_chunks(p);
         set_inflations(p);
         status = take_work_space(p, error);
@@ -135,8 +138,10 @@ void dem_packing_close(dem_packing *p)
 {
     for (int k = 0; k < DEM_CHUNKS; k++) {
         free(p->chunks[k].near);
+        free(p->chunks[k].near_least);
         free(p->chunks[k].lanes);
     }
+    dem_crew_destroy(p->crew);
     dem_arena_release(&p->arena);
     dem_candidates_release(&p->candidates);
     dem_samples_release(&p->samples);

@@ -3,6 +3,8 @@
 #ifndef DEM_CLUMP_PACKING_H
 #define DEM_CLUMP_PACKING_H
 
+#include "base/clock.h"
+#include "base/crew.h"
 #include "base/random.h"
 #include "clump/pack_candidates.h"
 #include "clump/pack_kernels.h"
@@ -37,8 +39,9 @@ typedef struct dem_pack_state {
 /// A fixed share of the sample blocks. Threads take whole chunks, so results do not depend on their number.
 typedef struct dem_pack_chunk {
     size_t begin, end;           ///< blocks
-    float *distance;             ///< [capacity] of the block at hand to each ball
+    dem_near_work work;
     uint32_t *near;              ///< balls near each block, one list after the other
+    float *near_least;           ///< as in dem_near_list
     size_t near_count, near_capacity;
     int32_t *slot;               ///< [capacity] of a ball in `lanes`; -1: not touched
     uint32_t *touched;           ///< [capacity] the balls that have a slot
@@ -62,7 +65,7 @@ typedef struct dem_packing {
     const dem_ctx *ctx;
     const dem_pack_options *options;
     const dem_pack_kernels *kernels;
-    int threads;
+    dem_crew *crew;              ///< NULL: alone
     dem_random random;
     dem_pack_effort effort;
     const dem_pack_grain *grain;
@@ -83,6 +86,7 @@ typedef struct dem_packing {
     uint32_t *near_size;         ///< [blocks]
     dem_ball *near_at;           ///< [capacity] the balls the lists were made for
     double near_slack;           ///< lists hold while no ball has moved by more than half of it
+    double near_moved;           ///< the farthest that one has moved since
     struct dem_link *links;      ///< [capacity]
     dem_ball *tree_balls;        ///< [capacity] those of the spanning tree found last
     size_t tree_count;
@@ -98,6 +102,7 @@ typedef struct dem_packing {
     dem_pack_state trial;        ///< of `dem_pack_relax`
     dem_pack_state moved;        ///< of `dem_pack_breathe`
     double stage_begin, stage_end, done;  ///< parts of the whole work: of the stage at hand, and what is done
+    dem_laps laps;
 } dem_packing;
 
 dem_status dem_packing_open(const dem_ctx *ctx, const dem_pack_grain *grain, const dem_pack_options *options,

@@ -43,12 +43,9 @@ static double cross2(flat_point o, flat_point a, flat_point b)
     return (a.x - o.x) * (b.y - o.y) - (a.y - o.y) * (b.x - o.x);
 }
 
-static int by_x_then_y(const void *pa, const void *pb)
+static bool x_then_y(flat_point a, flat_point b)
 {
-    const flat_point *a = pa, *b = pb;
-    if (a->x != b->x)
-        return a->x < b->x ? -1 : 1;
-    return (a->y > b->y) - (a->y < b->y);
+    return a.x < b.x || (a.x == b.x && a.y < b.y);
 }
 
 // projects along axis 2 of `f`, leaving out most points that lie inside the polygon of the extreme ones
@@ -89,10 +86,24 @@ static size_t project(const point_set *set, const frame *f)
     return kept;
 }
 
+// some dozens: by insertion over shrinking gaps (Shell 1959, with the gaps of Ciura 2001)
+static void sort_points(flat_point *p, size_t count)
+{
+    static const size_t gaps[] = {301, 132, 57, 23, 10, 4, 1};
+    for (size_t g = 0; g < sizeof gaps / sizeof *gaps; g++)
+        for (size_t i = gaps[g]; i < count; i++) {
+            flat_point moving = p[i];
+            size_t k = i;
+            for (; k >= gaps[g] && x_then_y(moving, p[k - gaps[g]]); k -= gaps[g])
+                p[k] = p[k - gaps[g]];
+            p[k] = moving;
+        }
+}
+
 // counter-clockwise hull without collinear points (Andrew 1979)
 static size_t planar_hull(flat_point *p, size_t count, flat_point *hull)
 {
-    qsort(p, count, sizeof *p, by_x_then_y);
+    sort_points(p, count);
     size_t n = 0;
     for (size_t i = 0; i < count; i++) {
         while (n >= 2 && cross2(hull[n - 2], hull[n - 1], p[i]) <= 0)
@@ -244,9 +255,20 @@ static dem_vec3 spiral(int i, int count)
     return v3(r * cos(angle), r * sin(angle), z);
 }
 
+// one point is the farthest in many directions: each is taken once
+static size_t add_extreme(const point_set *all, size_t point, size_t *taken, dem_vec3 *extreme, size_t found)
+{
+    for (size_t k = 0; k < found; k++)
+        if (taken[k] == point)
+            return found;
+    taken[found] = point;
+    extreme[found] = all->points[point];
+    return found + 1;
+}
+
 static size_t extreme_points(const point_set *all, dem_vec3 *extreme)
 {
-    size_t found = 0;
+    size_t found = 0, taken[2 * EXTREME_DIRECTIONS];
     for (int i = 0; i < EXTREME_DIRECTIONS; i++) {
         dem_vec3 d = spiral(i, EXTREME_DIRECTIONS);
         size_t low = 0, high = 0;
@@ -258,8 +280,8 @@ static size_t extreme_points(const point_set *all, dem_vec3 *extreme)
             if (x > most)
                 most = x, high = k;
         }
-        extreme[found++] = all->points[low];
-        extreme[found++] = all->points[high];
+        found = add_extreme(all, low, taken, extreme, found);
+        found = add_extreme(all, high, taken, extreme, found);
     }
     return found;
 }
@@ -334,7 +356,11 @@ static frame smallest_frame(point_set *few, const point_set *all)
         frame f = best[pick];
         best[pick].volume = INFINITY;
         tilt(few, &f, 0.2);
-        for (int k = 0; k < MAX_JOINS && join(few, all, &f); k++)
+        // most of those that were missing come in while it only turns
+        int joins = 0;
+        for (; joins < MAX_JOINS && join(few, all, &f); joins++)
+            settle(few, &f);
+        for (tilt(few, &f, 0.01); joins < MAX_JOINS && join(few, all, &f); joins++)
             tilt(few, &f, 0.01);
         join(few, all, &f);
         if (f.volume < least.volume)

@@ -22,12 +22,12 @@ enum { ENERGIES = 11 };
 static void list_energies(const dem_energy *e, row rows[ENERGIES])
 {
     const row list[ENERGIES] = {
-        {"start", "at the start", e->start},           {"work", "work of walls and pushes", e->work},
+        {"start", "at the start", e->start},           {"work", "work of walls, pushes, held bodies", e->work},
         {"kinetic", "translation", e->kinetic},        {"rotational", "rotation", e->rotational},
         {"potential", "gravity", e->potential},        {"elastic", "in the contacts", e->elastic},
         {"friction", "lost to friction", e->friction}, {"viscous", "lost in contact dashpots", e->viscous},
         {"broken", "let go by broken bonds", e->broken}, {"local", "lost to local damping", e->local},
-        {"drag", "lost to viscous damping", e->drag}};
+        {"drag", "lost to viscous damping and drag", e->drag}};
     memcpy(rows, list, sizeof list);
 }
 

@@ -134,6 +134,9 @@ static void put_passes(dem_buffer *out, const dem_world *w)
     put_motion(out, w, isotropic);
     if (w->damping.local > 0 || w->damping.viscous > 0)
         dem_buffer_text(out, "  with damping of the motion\n");
+    if (w->bodies.fluid)
+        dem_buffer_print(out, "  drag of a fluid on each body, within the kick%s\n",
+                         w->damping.drag.buoyancy ? ", and buoyancy" : "");
     dem_buffer_text(out, "  lists, when bodies have moved: search, refresh, rebuild\n");
     dem_buffer_print(out, "libraries: %s\n",
                      meshes ? "Embree, for triangles near a body" : "none (Embree is not started)");

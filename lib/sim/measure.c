@@ -5,6 +5,7 @@
 
 #include "base/status.h"
 #include "sim/bodies.h"
+#include "sim/fluid.h"
 #include "sim/motion.h"
 
 dem_status dem_views_create(dem_world *w, dem_error *error)
@@ -235,6 +236,19 @@ static void note_holding(dem_world *w, size_t i)
     v->since.work -= w->last_step / 2 * power;
 }
 
+// the drag of a fluid at the time of the positions, and what it takes in the half step up to there
+static dem_vec3 fluid_force(dem_world *w, size_t i, dem_vec3 load)
+{
+    size_t row = w->bodies.place[i];
+    const double *motion = body_pose(&w->bodies, row) + 8, *inertia = w->bodies.inertia + DEM_ROW * row;
+    double half = w->last_step / 2;
+    dem_vec3 was = v3(motion[0], motion[1], motion[2]), ahead = dem_motion_velocity(w, row, load);
+    dem_vec3 impulse = dem_fluid_impulse(w, row, ahead, half);
+    dem_vec3 now = unlocked_velocity(v3_along(ahead, inertia[0], impulse), body_hold(&w->bodies, row));
+    w->views.since.drag -= v3_dot(impulse, v3_add(was, now)) / 2;
+    return v3_scale(impulse, 1 / half);
+}
+
 static dem_vec3 unwrapped(const dem_world *w, size_t row)
 {
     dem_vec3 x = body_position(&w->bodies, row);
@@ -267,6 +281,8 @@ static void view_body(dem_world *w, size_t i)
     bool damped = w->damping.local > 0 || w->damping.viscous > 0;
     damping d;
     uint32_t hold = body_hold(&w->bodies, row);
+    if (w->bodies.fluid && w->last_step > 0 && !(hold & DEM_HOLD_VELOCITY))
+        load[0] = v3_add(load[0], fluid_force(w, i, load[0]));
     if (damped) {
         d = damping_of(w, row, weight, load);
         spare_held(hold, &d);

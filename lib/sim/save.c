@@ -63,16 +63,13 @@ static uint64_t hash_constants(const dem_world *w)
         w->domain.high,
         {w->damping.local, w->damping.viscous, w->damping.local_frame + 2 * w->damping.exclude_gravity}};
     h = hash_bytes(h, loads, sizeof loads);
-    double numbers[10] = {w->time_def.step,
-                          w->multiple,
-                          w->domain.periodic[0],
-                          w->domain.periodic[1],
-                          w->domain.periodic[2],
-                          w->integrator.translation,
-                          w->integrator.rotation,
-                          w->held,
-                          w->kept,
-                          w->soft.tau};
+    const dem_drag_def *drag = &w->damping.drag;
+    double motion[] = {
+        w->integrator.translation, w->integrator.rotation, w->held,          w->kept,          drag->density,
+        drag->viscosity,           drag->velocity.x,       drag->velocity.y, drag->velocity.z, drag->buoyancy};
+    h = hash_bytes(h, motion, sizeof motion);
+    double numbers[] = {w->time_def.step,      w->multiple,           w->domain.periodic[0],
+                        w->domain.periodic[1], w->domain.periodic[2], w->soft.tau};
     return hash_bytes(h, numbers, sizeof numbers);
 }
 

@@ -94,6 +94,21 @@ static dem_status read_domain(dem_scene_reader *r, const dem_scene_value *v, con
 
 static const dem_choice local_frames[] = {{"space", DEM_LOCAL_SPACE}, {"vector", DEM_LOCAL_VECTOR}, {NULL, 0}};
 
+static const dem_field drag_table[] = {
+    {"density", dem_field_quantity, .at = offsetof(dem_drag_def, density), .needed = true,
+     .dimension = DEM_DIMENSION_DENSITY, .range = DEM_RANGE_FROM_0},
+    {"viscosity", dem_field_quantity, .at = offsetof(dem_drag_def, viscosity), .needed = true,
+     .dimension = DEM_DIMENSION_VISCOSITY, .range = DEM_RANGE_FROM_0},
+    {"velocity", dem_field_vector, .at = offsetof(dem_drag_def, velocity), .dimension = DEM_DIMENSION_VELOCITY},
+    {"buoyancy", dem_field_flag, .at = offsetof(dem_drag_def, buoyancy)},
+};
+static const dem_fields drag_fields = DEM_FIELDS(drag_table);
+
+static dem_status read_drag(dem_scene_reader *r, const dem_scene_value *v, const dem_field *field, void *into)
+{
+    return dem_json_is_null(v->json) ? DEM_OK : dem_field_object(r, v, field, into);
+}
+
 static const dem_field damping_table[] = {
     {"local", dem_field_quantity, .at = offsetof(dem_damping_def, local), .dimension = DEM_DIMENSION_NONE,
      .range = {.high = 1, .below = true}},
@@ -101,7 +116,7 @@ static const dem_field damping_table[] = {
     {"exclude_gravity", dem_field_flag, .at = offsetof(dem_damping_def, exclude_gravity)},
     {"viscous", dem_field_quantity, .at = offsetof(dem_damping_def, viscous), .dimension = DEM_DIMENSION_RATE,
      .range = DEM_RANGE_FROM_0},
-    DEM_UNBUILT("drag"),
+    {"drag", read_drag, .at = offsetof(dem_damping_def, drag), .fields = &drag_fields},
 };
 static const dem_fields damping_fields = DEM_FIELDS(damping_table);
 

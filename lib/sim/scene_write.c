@@ -225,8 +225,11 @@ static void put_shapes(dem_json_writer *w, const dem_scene *scene)
             put_spheres(w, shape->clump,
                         shape->material < scene->material_count ? scene->materials[shape->material].density : NAN);
         else {
-            dem_json_open_object(w, "sphere");
+            bool disc = shape->disc_thickness > 0;
+            dem_json_open_object(w, disc ? "disc" : "sphere");
             dem_json_put_number(w, "radius", shape->sphere_radius);
+            if (disc)
+                dem_json_put_number(w, "thickness", shape->disc_thickness);
             dem_json_close(w, '}');
         }
         dem_json_close(w, '}');
@@ -443,6 +446,17 @@ static void put_damping(dem_json_writer *w, const dem_damping_def *damping)
     dem_json_put_string(w, "local_frame", damping->local_frame == DEM_LOCAL_VECTOR ? "vector" : "space");
     dem_json_put_bool(w, "exclude_gravity", damping->exclude_gravity);
     dem_json_put_number(w, "viscous", damping->viscous);
+    const dem_drag_def *drag = &damping->drag;
+    if (!(drag->density > 0 || drag->viscosity > 0))
+        dem_json_put_raw(w, "drag", "null");
+    else {
+        dem_json_open_object(w, "drag");
+        dem_json_put_number(w, "density", drag->density);
+        dem_json_put_number(w, "viscosity", drag->viscosity);
+        put_vec(w, "velocity", drag->velocity);
+        dem_json_put_bool(w, "buoyancy", drag->buoyancy);
+        dem_json_close(w, '}');
+    }
     dem_json_close(w, '}');
 }
 

@@ -45,6 +45,7 @@ enum {
       "momenta before the contacts")                                                                                   \
     X(uint32_t, hold, 1, "-", (w)->held, "what of the motion is held")                                                 \
     X(double, kept, 6, "m/s, rad/s", (w)->kept, "velocity and spin that are held")                                     \
+    X(double, fluid, 4, "N s, J", fluid_drags(&(w)->damping.drag), "impulse of the drag in the last step")             \
     X(double, turning, 3, "rad/s2", (w)->integrator.rotation == DEM_ROTATION_WALTON_BRAUN,                             \
       "rate of the spin in the body, a step before")
 
@@ -57,6 +58,11 @@ typedef struct dem_bodies {
 #undef COLUMN
     uint32_t *place;  ///< [count] row of the i-th body of the scene
 } dem_bodies;
+
+static inline bool fluid_drags(const dem_drag_def *drag)
+{
+    return drag->density > 0 || drag->viscosity > 0;
+}
 
 /// Two bodies whose bounding balls are nearer than the skin; a < b, or a == b across a periodic side.
 typedef struct dem_pair {
@@ -258,8 +264,8 @@ static inline uint32_t body_hold(const dem_bodies *b, size_t row)
 /// The mass itself, also of a body that others see without end of it [kg].
 static inline double body_mass(const dem_world *w, size_t row)
 {
-    double scale = body_scale(&w->bodies, row), cube = scale * scale * scale;
-    return w->templates.items[w->bodies.shape[row]].mass * cube;
+    const dem_template *t = &w->templates.items[w->bodies.shape[row]];
+    return t->mass * template_bulk(t, body_scale(&w->bodies, row));
 }
 
 #endif

@@ -5,6 +5,7 @@
 #include "sim/bodies.h"
 #include "sim/broad.h"
 #include "sim/contacts.h"
+#include "sim/fluid.h"
 #include "sim/lists.h"
 #include "sim/measure.h"
 #include "sim/motion.h"
@@ -182,6 +183,14 @@ static dem_status make_state(dem_world *w, const dem_scene *scene, dem_error *er
     return DEM_OK;
 }
 
+static dem_status check_fluid(const dem_drag_def *drag, dem_error *error)
+{
+    if (drag->density >= 0 && drag->viscosity >= 0 && isfinite(drag->density + drag->viscosity) &&
+        isfinite(v3_norm2(drag->velocity)))
+        return DEM_OK;
+    return dem_fail(error, DEM_USAGE, "damping.drag: has a number that cannot be; give density and viscosity from 0");
+}
+
 static dem_status check_schemes(const dem_scene *scene, dem_error *error)
 {
     if ((unsigned)scene->integrator.translation < DEM_TRANSLATION_SCHEMES &&
@@ -194,6 +203,7 @@ dem_status dem_world_create(const dem_ctx *ctx, const dem_scene *scene, dem_worl
 {
     *world = NULL;
     DEM_TRY(check_schemes(scene, error));
+    DEM_TRY(check_fluid(&scene->damping.drag, error));
     dem_world *w = *world = aligned_alloc(64, (sizeof *w + 63) / 64 * 64);
     if (!w)
         return dem_fail_memory(error);
@@ -400,7 +410,11 @@ static void step_part(void *user, int which)
         dem_team_meet(w->team);
     }
     double t3 = dem_clock();
+    if (w->bodies.fluid)
+        dem_fluid_push(w, begin * DEM_SEGMENT, end * DEM_SEGMENT, kick);
     motion_pass(w, begin, end, kick, part);
+    if (w->bodies.fluid && w->ledger)
+        dem_fluid_tally(w, begin * DEM_SEGMENT, end * DEM_SEGMENT);
     double t4 = dem_clock();
     if (part == 0) {
         w->clocks[DEM_PASS_WALLS].seconds += t1 - t0;

@@ -115,6 +115,7 @@ typedef struct dem_shape_def {
     const char *clump_file;  ///< resolved path; NULL: none
     const dem_clump *clump;  ///< also what was read from `clump_file`
     double sphere_radius;    ///< [m]; 0: not a sphere
+    double disc_thickness;   ///< 0, or the sphere is a disc of two dimensions: m = rho pi r^2 t, I = m r^2 / 2 [m]
     uint32_t material;
 } dem_shape_def;
 
@@ -221,11 +222,21 @@ typedef enum dem_local_frame {
     DEM_LOCAL_VECTOR,  ///< force and moment as vectors against the velocity
 } dem_local_frame;
 
+/// A fluid that flows evenly and drags each body as the sphere of its volume (Schiller & Naumann 1933). Density and
+/// viscosity 0: there is none.
+typedef struct dem_drag_def {
+    double density;     ///< [kg/m^3]
+    double viscosity;   ///< dynamic [Pa s]
+    dem_vec3 velocity;  ///< [m/s]
+    bool buoyancy;      ///< bodies weigh less by the fluid they displace
+} dem_drag_def;
+
 typedef struct dem_damping_def {
     double local;  ///< Cundall's alpha, 0..1 [-]
     dem_local_frame local_frame;
     bool exclude_gravity;  ///< local damping acts on the contact forces only
     double viscous;        ///< F = -c m v, T = -c L [1/s]
+    dem_drag_def drag;
 } dem_damping_def;
 
 /// How positions follow from forces, one evaluation of the forces a step (PHYSICS 2.1).

@@ -92,8 +92,8 @@ typedef struct dem_energy {
     double viscous;              ///< dissipated by the dashpots of contacts
     double broken;               ///< let go by bonds that broke
     double local;                ///< dissipated by local damping
-    double drag;                 ///< dissipated by global viscous damping
-    double work;                 ///< done by moving walls and pushes
+    double drag;                 ///< taken from the bodies by global viscous damping and by the drag of a fluid
+    double work;                 ///< done by moving walls, pushes, and bodies whose motion is given
     double start;                ///< kinetic + rotational + potential + elastic at the scene's start
     double error;  ///< imbalance of all of these over the largest energy turned over [-]; NAN: no ledger kept
 } dem_energy;
