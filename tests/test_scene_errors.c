@@ -382,10 +382,10 @@ static void wrong_walls_are_refused(void **state)
          "~use one of: inside, outside"},
         {WALL("'cone': {}"), 7, "~this is not built yet"},
         {WALL("'sphere': {}"), 7, "~is not built yet"},
-        {WALL(PLANE ", 'servo': {}"), 7, "~is not built yet"},
+        {WALL(PLANE ", 'servo': {}"), 7, "~'max_velocity' is missing"},
         {WALL(PLANE ", 'wear': {}"), 7, "~is not built yet"},
-        {WALL(PLANE ", 'motion': {'oscillate': {}}"), 7, "~is not built yet"},
-        {WALL(PLANE ", 'motion': {'table': 'x.csv'}"), 7, "~is not built yet"},
+        {WALL(PLANE ", 'motion': {'oscillate': {}}"), 7, "~'frequency' is missing"},
+        {WALL(PLANE ", 'motion': {'table': 'x.csv'}"), 7, "~files are not read here"},
         {WALL(PLANE ", 'motion': {'translate': {}}"), 7, "~'velocity' is missing"},
         {WALL(PLANE ", 'motion': {'rotate': {'axis': [0, 0, 1]}}"), 7, "~'rate' is missing"},
         {IN_HEAD("'walls': {'w.x-': {'material': 'rock', " PLANE

@@ -49,6 +49,8 @@ typedef struct dem_wall_source {
     const char *unit;  ///< of the mesh file; NULL: not a mesh
     dem_vec3 axis;     ///< unit; spin = rate axis
     double rate;       ///< [rad/s]
+    // names of walls that a servo refers to, until all walls are known; NULL: none
+    const char *partner, *extent[2][2];
 } dem_wall_source;
 
 /// Holds everything a scene that was read points to.
