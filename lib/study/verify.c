@@ -14,6 +14,7 @@ static const dem_case *const parts[] = {
     dem_verify_integrators,
     dem_verify_laws,
     dem_verify_soft,
+    dem_verify_walls,
 };
 
 const dem_case *dem_verify_case(size_t index)

@@ -135,9 +135,9 @@ static void drag(dem_trial *t)
             *(drag_of(v, d, cases[i].density, cases[i].viscosity) < weight ? &low : &high) = v;
         }
         m->scene.time.step = fmin(low / G / 200, 0.2 * d / low);
-        model_body(m, model_sphere(m, d / 2), v3(0, 0, 0));
+        model_body(m, model_sphere(m, d / 2), v3(0, 0, 0))->velocity = v3(0, 0, -0.7 * low);
         dem_trial_start(t);
-        dem_trial_step(t, (uint64_t)(20 * low / G / m->scene.time.step));
+        dem_trial_step(t, (uint64_t)(14 * low / (weight / model_ball_mass(d / 2)) / m->scene.time.step));
         dem_expect(t, -dem_trial_body(t, 0).velocity.z, low, 1e-5 * low, "m/s", "%s: terminal speed", cases[i].fluid);
     }
 }
