@@ -396,14 +396,34 @@ static void wrong_walls_are_refused(void **state)
     CHECK_REFUSALS(cases);
 }
 
+#define GRAIN                                                                                                          \
+    "'materials': {'a': {'density': 1}}, 'contacts': [{'between': ['a', 'a'], 'normal': {'law': 'linear', "            \
+    "'stiffness': 1}}], 'shapes': {'b': {'sphere': {'radius': 1}, 'material': 'a'}},\n"
+#define INLET "'inlets': {'a': {'mix': [{'shape': 'b'}], "
+
+static void inlets_that_cannot_be_are_refused(void **state)
+{
+    (void)state;
+    static const refusal cases[] = {
+        {S "'inlets': [1]}", 2, "~needs an object of inlets by name"},
+        {S "'inlets': {'a': {}}}", 2, "~'mix' is missing"},
+        {S GRAIN INLET "'rate': 1}}}", 3, "~needs one of"},
+        {S GRAIN INLET "'rate': 1, 'sphere': {'centre': [0, 0, 0], 'radius': 1}, 'box': [[0, 0, 0], [1, 1, 1]]}}}", 3, "~has both of"},
+        {S GRAIN INLET "'rate': 1, 'sphere': {'centre': [0, 0, 0], 'radius': 1}}}}", 3, "~never get out of the sphere"},
+        {S GRAIN INLET "'box': [[0, 0, 0], [1, 1, 1]]}}}", 3, "~needs one of"},
+        {S GRAIN INLET "'box': [[0, 0, 0], [1, 1, 1]], 'rate': 1, 'mass_rate': 1}}}", 3, "~has both of"},
+        {S GRAIN INLET "'box': [[0, 0, 0], [1, 1, 1]], 'rate': 0}}}", 3, "~must be above 0"},
+        {S GRAIN INLET "'box': [[0, 0, 0], [1, 1, 0]], 'rate': 1}}}", 3, "~below the second along z"},
+        {S GRAIN INLET "'box': [[0, 0, 0], [1, 1, 1]], 'rate': 1, 'start': 2, 'stop': 1}}}", 3, "~must be before"},
+        {S GRAIN INLET "'box': [[0, 0, 0], [1, 1, 1]], 'rate': 1, 'velocity_spread': -1}}}", 3, "~must be at least 0"},
+    };
+    CHECK_REFUSALS(cases);
+}
+
 static void what_is_not_built_is_never_ignored(void **state)
 {
     (void)state;
     static const refusal cases[] = {
-        {S "'domain': {'leaving': 'delete'}}", 2,
-         "domain.leaving: 'delete' is not built yet (column 23); leave it out"},
-        {S "'inlets': {'a': {}}}", 2, "~this is not built yet"},
-        {S "'inlets': [1]}", 2, "~is not built yet"},
         {S "'bonds': {'a': {}}}", 2, "~is not built yet"},
         {S "'bonds': 5}", 2, "~is not built yet"},
         {S "'damping': {'drag': {}}}", 2, "~'density' is missing"},
@@ -450,6 +470,7 @@ int main(void)
         cmocka_unit_test(wrong_shapes_are_refused),
         cmocka_unit_test(wrong_bodies_are_refused),
         cmocka_unit_test(wrong_walls_are_refused),
+        cmocka_unit_test(inlets_that_cannot_be_are_refused),
         cmocka_unit_test(what_is_not_built_is_never_ignored),
         cmocka_unit_test(text_that_is_no_json_is_refused_by_its_line),
     };

@@ -21,6 +21,7 @@ typedef enum dem_dimension {
     DEM_DIMENSION_VISCOSITY,        ///< [Pa s]
     DEM_DIMENSION_FORCE,            ///< [N]
     DEM_DIMENSION_SLOWNESS,         ///< [s/m]
+    DEM_DIMENSION_MASS_RATE,        ///< [kg/s]
     DEM_DIMENSION_NONE,             ///< a pure number [-]
 } dem_dimension;
 

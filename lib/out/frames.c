@@ -159,7 +159,7 @@ static dem_status write_bodies(dem_file_queue *queue, const char *path, double t
         dem_quat q = b->orientation[i];
         float *turn = turns + 4 * i;
         turn[0] = (float)q.w, turn[1] = (float)q.x, turn[2] = (float)q.y, turn[3] = (float)q.z;
-        ids[i] = (uint32_t)i;
+        ids[i] = b->id ? b->id[i] : (uint32_t)i;
     }
     const dem_vtp_array arrays[] = {
         {"orientation", DEM_VTP_FLOAT32, 4, turns},    {"scale", DEM_VTP_FLOAT64, 1, b->scale},

@@ -64,7 +64,8 @@ static void release_bodies(dem_results *r)
 {
     const dem_body_view *b = &r->bodies;
     const void *all[] = {b->shape,       b->scale,    b->mass, b->position,
-                         b->orientation, b->velocity, b->spin, b->coordination};
+                         b->orientation, b->velocity, b->spin, b->coordination,
+                         b->id};
     for (size_t i = 0; i < sizeof all / sizeof *all; i++)
         free((void *)all[i]);
     r->bodies = (dem_body_view){0};
@@ -181,6 +182,14 @@ static dem_status fill_frame(dem_results *r, const char *path, dem_error *error)
     size_t n = v->point_count;
     columns c;
     DEM_TRY(make_columns(r, n, &c, error));
+    const dem_vtp_array *ids = dem_vtp_find(v, "id");
+    if (ids && ids->type == DEM_VTP_UINT32 && ids->width == 1) {
+        uint32_t *id = dem_alloc(n, sizeof *id);
+        r->bodies.id = id;
+        if (!id)
+            return dem_fail_memory(error);
+        memcpy(id, ids->data, n * sizeof *id);
+    }
     r->bodies.coordination = c.coordination = dem_alloc(n, sizeof *c.coordination);
     if (!c.coordination)
         return dem_fail_memory(error);

@@ -307,8 +307,12 @@ static dem_status open_outputs(runner *r, double resume, dem_error *error)
         DEM_TRY(dem_frames_open(&def, &r->frames, error));
     }
     if (o->series > 0)
-        DEM_TRY(dem_series_open(&(dem_series_def){o->directory, r->scene->walls, r->scene->wall_count,
-                                                  r->scene->measures, r->scene->measure_count},
+        DEM_TRY(dem_series_open(&(dem_series_def){.directory = o->directory,
+                                                  .flow = r->w->population != NULL,
+                                                  .walls = r->scene->walls,
+                                                  .wall_count = r->scene->wall_count,
+                                                  .measures = r->scene->measures,
+                                                  .measure_count = r->scene->measure_count},
                                 resume, &r->series, error));
     if (o->contacts > 0)
         DEM_TRY(dem_network_open(o->directory, &r->scene->domain, resume, &r->network, error));
@@ -348,6 +352,14 @@ static dem_status conclude(runner *r, dem_error *error)
     result->passes = dem_alloc(count + 1, sizeof *result->passes);
     if (!result->passes)
         return dem_fail_memory(error);
+    const dem_inlet_view *inlets = dem_world_inlets(r->w, &result->inlet_count);
+    result->inlets = dem_alloc(result->inlet_count, sizeof *result->inlets);
+    if (!result->inlets)
+        return dem_fail_memory(error);
+    for (size_t i = 0; i < result->inlet_count; i++) {
+        result->inlets[i] = inlets[i];
+        result->inlets[i].name = r->scene->inlets[i].name;
+    }
     memcpy(result->passes, passes, count * sizeof *passes);
     result->passes[count] = (dem_pass_time){"output", r->output_seconds};
     result->pass_count = count + 1;
@@ -410,6 +422,7 @@ dem_status dem_run(const dem_ctx *ctx, const dem_scene *scene, const dem_run_opt
 void dem_run_release(dem_run_result *result)
 {
     free(result->passes);
+    free(result->inlets);
     free(result->checkpoint);
     free(result->stopped);
 }

@@ -15,7 +15,7 @@ struct dem_series {
     char *path;
     int file;
     size_t size;  // bytes of whole rows
-    size_t rows, wall_count, measure_count;
+    size_t rows, columns, wall_count, measure_count;  // columns: of the whole
 };
 
 // ---- columns
@@ -50,9 +50,16 @@ static const struct {
     COLUMN(NUMBER, "centre_y_m", centre.y),
     COLUMN(NUMBER, "centre_z_m", centre.z),
     COLUMN(NUMBER, "highest_m", highest),
+    // where bodies come and go
+    COLUMN(COUNT, "bodies", bodies),
+    COLUMN(COUNT, "came_bodies", came),
+    COLUMN(NUMBER, "came_kg", came_mass),
+    COLUMN(COUNT, "left_bodies", left),
+    COLUMN(NUMBER, "left_kg", left_mass),
+    COLUMN(NUMBER, "brought_J", energy.brought),
 #undef COLUMN
 };
-enum { COLUMNS = sizeof columns / sizeof *columns };
+enum { FLOW_COLUMNS = 6, COLUMNS = sizeof columns / sizeof *columns - FLOW_COLUMNS };
 
 // of a region
 static const struct {
@@ -95,7 +102,7 @@ static dem_status put_head(dem_buffer *out, const dem_series_def *def, dem_error
     dem_plain_name *names = dem_alloc(count + def->measure_count, sizeof *names);
     if (!names)
         return dem_fail_memory(error);
-    for (size_t i = 0; i < COLUMNS; i++)
+    for (size_t i = 0; i < COLUMNS + (def->flow ? FLOW_COLUMNS : 0); i++)
         dem_buffer_print(out, "%s%s", i ? "," : "", columns[i].name);
     for (size_t i = 0; i < count; i++) {
         names[i] = dem_name_plain(def->walls[i].name, "wall", names, i);
@@ -128,7 +135,7 @@ static void put_row(dem_buffer *out, const dem_series *s, const dem_figures *fig
                     const dem_measure_view *views)
 {
     size_t count = s->wall_count;
-    for (size_t i = 0; i < COLUMNS; i++) {
+    for (size_t i = 0; i < s->columns; i++) {
         const char *value = (const char *)figures + columns[i].at;
         if (i)
             dem_buffer_text(out, ",");
@@ -205,6 +212,7 @@ dem_status dem_series_open(const dem_series_def *def, double resume, dem_series 
         return dem_fail_memory(error);
     *s = (dem_series){.path = dem_path_join(def->directory, "series.csv"),
                       .file = -1,
+                      .columns = COLUMNS + (def->flow ? FLOW_COLUMNS : 0),
                       .wall_count = def->wall_count,
                       .measure_count = def->measure_count};
     dem_status status = s->path ? dem_folder_create(def->directory, error) : dem_fail_memory(error);

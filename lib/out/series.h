@@ -12,6 +12,7 @@ typedef struct dem_series dem_series;
 /// What the columns behind those of the whole stand for; borrowed while it is opened.
 typedef struct dem_series_def {
     const char *directory;
+    bool flow;                  ///< bodies come and go: columns of how many and how much
     const dem_wall_def *walls;  ///< six columns each: what the bodies do to it
     size_t wall_count;
     const dem_measure_def *measures;  ///< see dem_measure_view

@@ -6,6 +6,7 @@
 #include "base/text.h"
 #include "sim/bodies.h"
 #include "sim/contacts.h"
+#include "sim/population.h"
 #include "sim/schemes.h"
 #include "sim/timestep.h"
 
@@ -94,7 +95,7 @@ static void put_motion(dem_buffer *out, const dem_world *w, size_t isotropic)
     dem_buffer_print(out, "  motion: %s, ",
                      w->integrator.translation == DEM_TRANSLATION_CENTRAL ? "central differences" : t->about);
     bool lsym = w->integrator.rotation == DEM_ROTATION_LSYM;
-    if (lsym && isotropic == w->bodies.count)
+    if (lsym && isotropic == w->bodies.living)
         dem_buffer_text(out, "isotropic rotation (all bodies have three equal moments)\n");
     else if (lsym && isotropic)
         dem_buffer_print(out, "rotation by lsym, isotropic for %zu bodies\n", isotropic);
@@ -111,11 +112,23 @@ static void put_motion(dem_buffer *out, const dem_world *w, size_t isotropic)
         put_held(out, w);
 }
 
+static void put_population(dem_buffer *out, const dem_world *w)
+{
+    const dem_population *p = w->population;
+    if (p->inlet_count)
+        dem_buffer_print(out,
+                         "  %zu inlet%s: rows for %zu bodies now, more when they are taken; every body that comes makes a "
+                         "search due\n",
+                         p->inlet_count, p->inlet_count == 1 ? "" : "s", w->bodies.count);
+    if (w->domain.leaving == DEM_LEAVING_DELETE)
+        dem_buffer_text(out, "  bodies outside of the domain are deleted, after each search\n");
+}
+
 static void put_passes(dem_buffer *out, const dem_world *w)
 {
     size_t isotropic = 0, meshes = count_walls(w, DEM_FORM_MESH);
     for (size_t row = 0; row < w->bodies.count; row++)
-        isotropic += w->bodies.inertia[DEM_ROW * row + 7] > 0;
+        isotropic += !body_absent(&w->bodies, row) && w->bodies.inertia[DEM_ROW * row + 7] > 0;
     dem_buffer_text(out, "passes of a step:\n");
     if (w->walls.move)
         dem_buffer_text(out, "  walls move to their place\n");
@@ -135,6 +148,8 @@ static void put_passes(dem_buffer *out, const dem_world *w)
     if (w->bodies.fluid)
         dem_buffer_print(out, "  drag of a fluid on each body, within the kick%s\n",
                          w->damping.drag.buoyancy ? ", and buoyancy" : "");
+    if (w->population)
+        put_population(out, w);
     dem_buffer_text(out, "  lists, when bodies have moved: search, refresh, rebuild\n");
     dem_buffer_print(out, "libraries: %s\n",
                      meshes ? "Embree, for triangles near a body" : "none (Embree is not started)");
@@ -174,8 +189,8 @@ dem_status dem_world_explain(dem_world *w, char **text, dem_error *error)
     dem_buffer out = {0};
     size_t spheres = 0;
     for (size_t row = 0; row < w->bodies.count; row++)
-        spheres += w->templates.items[w->bodies.shape[row]].count;
-    dem_buffer_print(&out, "%zu bodies of %zu spheres in all, %zu shapes, %zu walls, %d threads\n", w->bodies.count,
+        spheres += body_absent(&w->bodies, row) ? 0 : w->templates.items[w->bodies.shape[row]].count;
+    dem_buffer_print(&out, "%zu bodies of %zu spheres in all, %zu shapes, %zu walls, %d threads\n", w->bodies.living,
                      spheres, w->shape_count, w->walls.count, w->threads);
     put_bodies(&out, w);
     put_contacts(&out, w, -1, "of a pair");
@@ -212,5 +227,6 @@ double dem_world_bytes_per_body(const dem_world *w)
         if (w->wall_contacts[form].segments)
             bytes += (double)w->wall_contacts[form].capacity * (double)dem_contact_bytes(&w->features, form);
     bytes += (double)w->segment_count * (sizeof(dem_segment) * 2 + sizeof(dem_tally) * (1 + DEM_WALL_FORMS));
+    n = w->bodies.living;
     return n ? bytes / (double)n : 0;
 }

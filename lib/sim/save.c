@@ -8,6 +8,8 @@
 #include "sim/bodies.h"
 #include "sim/broad.h"
 #include "sim/contacts.h"
+#include "sim/measure.h"
+#include "sim/population.h"
 
 enum { LAYOUT = 1 };
 
@@ -35,7 +37,7 @@ typedef struct block_head {
     uint64_t steps, epoch_steps, step_reviewed;
     double epoch_time, last_step, next_step, wall_path, sweep_speed, sweep_least, push_work;
     double energy_start, potential_start, most_energy, skin;
-    uint64_t pairs;
+    uint64_t pairs, living;
 } block_head;
 
 static uint64_t hash_wall(uint64_t h, const dem_wall *wall)
@@ -87,8 +89,19 @@ static uint64_t hash_constants(const dem_world *w)
         w->integrator.translation, w->integrator.rotation, w->held,          w->kept,          drag->density,
         drag->viscosity,           drag->velocity.x,       drag->velocity.y, drag->velocity.z, drag->buoyancy};
     h = hash_bytes(h, motion, sizeof motion);
+    for (size_t i = 0; w->population && i < w->population->inlet_count; i++) {
+        const dem_inlet_def *d = &w->population->inlets[i].def;
+        double given[] = {d->kind,       d->low.x,      d->low.y,      d->low.z,           d->high.x, d->high.y,
+                          d->high.z,     d->centre.x,   d->centre.y,   d->centre.z,        d->radius, d->rate,
+                          d->by_mass,    d->velocity.x, d->velocity.y, d->velocity.z,      d->start,  d->stop,
+                          d->spin.x,     d->spin.y,     d->spin.z,     d->velocity_spread, d->gap,    (double)d->count,
+                          d->spin_spread};
+        h = hash_bytes(h, given, sizeof given);
+        h = hash_bytes(h, &d->seed, sizeof d->seed);
+    }
     double numbers[] = {w->time_def.step,      w->multiple,           w->domain.periodic[0],
-                        w->domain.periodic[1], w->domain.periodic[2], w->soft.tau};
+                        w->domain.periodic[1], w->domain.periodic[2], w->soft.tau,
+                        w->domain.leaving == DEM_LEAVING_DELETE};
     return hash_bytes(h, numbers, sizeof numbers);
 }
 
@@ -119,6 +132,7 @@ static block_head head_of(const dem_world *w)
     h.most_energy = w->views.most_energy;
     h.skin = w->skin;
     h.pairs = w->pairs.count;
+    h.living = w->bodies.living;
     return h;
 }
 
@@ -198,7 +212,7 @@ static void pass_bodies(cursor *c, dem_world *w)
         pass(c, b->name, b->padded *(width) * sizeof(type));
     DEM_BODY_COLUMNS(COLUMN)
 #undef COLUMN
-    pass(c, b->place, b->count * sizeof *b->place);
+    pass(c, b->place, b->living * sizeof *b->place);
 }
 
 static void pass_pairs(cursor *c, dem_world *w)
@@ -273,9 +287,38 @@ static void pass_walls(cursor *c, dem_world *w)
     }
 }
 
+// what inlets have done; the mix is drawn anew up to there
+static void pass_population(cursor *c, dem_world *w)
+{
+    dem_population *p = w->population;
+    pass(c, &p->next_id, sizeof p->next_id);
+    pass(c, &p->came, sizeof p->came);
+    pass(c, &p->left, sizeof p->left);
+    pass(c, &p->came_mass, sizeof p->came_mass);
+    pass(c, &p->left_mass, sizeof p->left_mass);
+    pass(c, &p->brought, sizeof p->brought);
+    for (size_t i = 0; i < p->inlet_count; i++) {
+        dem_inlet *inlet = &p->inlets[i];
+        uint64_t drawn = inlet->made;
+        pass(c, &inlet->made, sizeof inlet->made);
+        pass(c, &inlet->mass, sizeof inlet->mass);
+        pass(c, &inlet->again, sizeof inlet->again);
+        pass(c, &inlet->looks, sizeof inlet->looks);
+        pass(c, &inlet->inside, sizeof inlet->inside);
+        if (c->out)
+            continue;
+        c->failed |= inlet->made < drawn || inlet->made > p->next_id ||
+                     (inlet->inside != (uint32_t)DEM_ROW_FREE && inlet->inside >= w->bodies.count);
+        for (; !c->failed && drawn < inlet->made; drawn++)
+            inlet->next = dem_fill_drawer_next(inlet->drawer);
+    }
+}
+
 static void pass_state(cursor *c, dem_world *w)
 {
     pass_walls(c, w);
+    if (w->population)
+        pass_population(c, w);
     pass_bodies(c, w);
     pass_pairs(c, w);
     pass_contacts(c, w, &w->contacts, -1);
@@ -315,8 +358,11 @@ static dem_status refuse(dem_error *error, const char *what)
 static bool sound(const dem_world *w)
 {
     size_t n = w->bodies.count;
+    for (size_t i = 0; i < w->bodies.living; i++)
+        if (w->bodies.place[i] >= n || body_absent(&w->bodies, w->bodies.place[i]))
+            return false;
     for (size_t i = 0; i < n; i++)
-        if (w->bodies.place[i] >= n || w->bodies.shape[i] >= w->shape_count)
+        if (w->bodies.shape[i] >= w->shape_count)
             return false;
     for (size_t i = 0; i < w->pairs.count; i++) {
         const dem_pair *p = &w->pairs.items[i];
@@ -339,16 +385,25 @@ dem_status dem_world_restore(dem_world *w, const void *bytes, size_t size, dem_e
     memcpy(&head, bytes, sizeof head);
     if (head.layout != LAYOUT)
         return refuse(error, "is of another version; run it with the program that wrote it");
+    // a world that bodies come to has grown since
+    if (w->population && head.bodies > own.bodies && head.bodies < INT32_MAX &&
+        head.segments == (head.bodies + DEM_SEGMENT - 1) / DEM_SEGMENT && head.bodies <= size) {
+        DEM_TRY(dem_world_grow(w, head.bodies, error));
+        own = head_of(w);
+    }
     bool same = head.constants == own.constants && head.bodies == own.bodies && head.shapes == own.shapes &&
-                head.walls == own.walls && head.laws == own.laws && head.segments == own.segments &&
+                head.walls == own.walls && head.laws == own.laws && head.segments == own.segments && head.living <= head.bodies &&
+                (w->population || head.living == own.living) &&
                 memcmp(&head.features, &own.features, sizeof own.features) == 0;
     if (!same)
         return refuse(error, "belongs to another scene; resume with the scene it was made from");
     cursor c = {.in = (const char *)bytes + sizeof head, .left = size - sizeof head - sizeof hash};
     take_head(w, &head);
+    w->bodies.living = head.living;
     pass_state(&c, w);
     if (c.failed || c.left || !sound(w))
         return refuse(error, "does not fit the scene; resume with the scene it was made from");
+    dem_views_number(w);
     dem_walls_place(&w->walls, dem_world_time(w));
     // where momenta of other domains go is made anew
     for (size_t i = 0; i < w->segment_count; i++)

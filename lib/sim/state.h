@@ -40,6 +40,7 @@ enum {
     X(uint32_t, shape, 1, "-", true, "index of the shape")                                                             \
     X(double, wall_limit, 1, "m", (w)->walls.count > 0, "path at which the wall lists are looked at")                  \
     X(double, strain_limit, 1, "-", (w)->features.watch, "strain at which the step is looked at")                      \
+    X(uint32_t, id, 1, "-", (w)->population != NULL, "number of the body by birth, or that there is none")             \
     X(int32_t, wraps, 3, "-", (w)->periodic, "how often a periodic side was crossed")                                  \
     X(double, before, 8, "kg m/s, kg m2/s", (w)->damping.local > 0 || (w)->damping.viscous > 0 || (w)->other_motion,   \
       "momenta before the contacts")                                                                                   \
@@ -50,13 +51,14 @@ enum {
       "rate of the spin in the body, a step before")
 
 typedef struct dem_bodies {
-    size_t count, padded;  ///< padded: to 8, with the two dummies
+    size_t count, padded;  ///< rows, some of which may be without a body; padded: to 8, with the two dummies
+    size_t living;         ///< bodies
     uint32_t dummy;        ///< row of the first dummy; the second follows
     size_t momentum_rows;  ///< rows of `momentum`: those of the bodies, then slots
 #define COLUMN(type, name, width, unit, when, about) type *name;
     DEM_BODY_COLUMNS(COLUMN)
 #undef COLUMN
-    uint32_t *place;  ///< [count] row of the i-th body of the scene
+    uint32_t *place;  ///< [living] row of the i-th body, in the order they came; there is room for `count`
 } dem_bodies;
 
 static inline bool fluid_drags(const dem_drag_def *drag)
@@ -134,7 +136,7 @@ typedef struct dem_servo_sum {
 } dem_servo_sum;
 
 typedef struct dem_views {
-    uint32_t *shape, *coordination, *by_row;  ///< by_row: body of a row
+    uint32_t *shape, *coordination, *id, *by_row;  ///< by_row: body of a row
     double *scale, *mass;
     dem_vec3 *position, *velocity, *spin, *force, *moment;
     dem_quat *orientation;
@@ -150,6 +152,7 @@ typedef struct dem_views {
 } dem_views;
 
 typedef struct dem_search dem_search;
+typedef struct dem_population dem_population;
 
 typedef struct dem_push {
     size_t row;
@@ -198,6 +201,7 @@ struct dem_world {
     dem_tally *tallies;                       ///< [segments * (1 + DEM_WALL_FORMS)]
     dem_motion_tally *motion_tallies;         ///< [segments]
     double push_work;
+    dem_population *population;            ///< NULL: bodies neither come nor go
     uint64_t step_reviewed;                ///< when all bodies were last asked for their step
     double energy_start, potential_start;  ///< [J]
     // work space
@@ -265,6 +269,12 @@ static inline dem_rows world_rows(const dem_world *w)
                       w->shifts,        w->laws.rows,       w->walls.rows};
 }
 
+/// What stands for a number of a body: a row without one; a row that a body has left, which lists may still name.
+enum { DEM_ROW_LEFT = UINT32_MAX - 1, DEM_ROW_FREE = UINT32_MAX };
+static inline bool body_absent(const dem_bodies *b, size_t row)
+{
+    return b->id && b->id[row] >= (uint32_t)DEM_ROW_LEFT;
+}
 static inline uint32_t body_hold(const dem_bodies *b, size_t row)
 {
     return b->hold ? b->hold[row] : 0;

@@ -3,6 +3,7 @@
 #include <string.h>
 
 #include "base/status.h"
+#include "sim/population.h"
 #include "sim/scene.h"
 #include "sim/touch.h"
 
@@ -219,6 +220,8 @@ dem_status dem_step_stable(dem_world *w, bool listed, dem_step_bound *bound, dem
         dem_mesh_touch_measure(w, 0, w->segment_count);
     *bound = (dem_step_bound){.step = INFINITY};
     for (size_t row = 0; row < w->bodies.count; row++) {
+        if (body_absent(&w->bodies, row))
+            continue;
         dem_step_bound own = body_bound(w, row, listed);
         if (own.step < bound->step)
             *bound = own;
@@ -235,11 +238,9 @@ double dem_world_critical_step(dem_world *w)
 // ---- the automatic step
 
 // the frequency of a body's stiffest contact with its like [1/s^2], with Hertz at the speed given
-static double stiffest_contact(const dem_world *w, size_t row, const double *law, double speed)
+static double stiffest_contact(const dem_template *t, double scale, const double *law, double speed)
 {
-    const dem_template *t = &w->templates.items[w->bodies.shape[row]];
-    double scale = body_scale(&w->bodies, row), r = t->radius_max * scale,
-           mass = t->least_mass * template_bulk(t, scale) / 2;
+    double r = t->radius_max * scale, mass = t->least_mass * template_bulk(t, scale) / 2;
     double radius = 0;
     if (law[LAW_HERTZ] > 0) {
         // the duration of an impact, as that of a spring: 2.943 d / v = pi / w
@@ -256,6 +257,13 @@ static double stiffest_contact(const dem_world *w, size_t row, const double *law
 double dem_step_impact_speed(const dem_world *w)
 {
     double fastest = 0, size = 0;
+    for (size_t i = 0; w->population && i < w->population->inlet_count; i++) {
+        const dem_inlet *inlet = &w->population->inlets[i];
+        if (!dem_inlet_over(w, inlet)) {
+            fastest = fmax(fastest, v3_norm(inlet->def.velocity) + 3 * inlet->def.velocity_spread);
+            size = fmax(size, inlet->radius);
+        }
+    }
     for (size_t row = 0; row < w->bodies.count; row++) {
         fastest = fmax(fastest, body_stride(&w->bodies, row, 1));
         size = fmax(size, w->bodies.radius[row]);
@@ -263,20 +271,40 @@ double dem_step_impact_speed(const dem_world *w)
     return fmax(fmax(2 * fastest, w->sweep_speed), sqrt(20 * v3_norm(w->gravity) * size));
 }
 
+// the highest frequency of a body's contacts, squared [1/s^2]
+static double highest_frequency(const dem_world *w, uint32_t shape, double scale, double speed)
+{
+    const dem_template *t = &w->templates.items[shape];
+    double highest = 0;
+    for (uint32_t other = 0; other < w->laws.material_count; other++) {
+        const double *law = laws_between(&w->laws, t->material, other);
+        if (law)
+            highest = fmax(highest, stiffest_contact(t, scale, law, speed));
+    }
+    return highest;
+}
+
+static double accurate_step(const dem_world *w, double highest)
+{
+    double steps = w->time_def.contact_steps > 0 ? w->time_def.contact_steps : DEM_PI;
+    return highest > 0 ? DEM_PI / sqrt(highest) / steps : INFINITY;
+}
+
 double dem_step_accurate(const dem_world *w)
 {
     double highest = 0, speed = w->features.hertz ? dem_step_impact_speed(w) : 0;
-    size_t n = w->laws.material_count;
-    for (size_t row = 0; row < w->bodies.count; row++) {
-        uint32_t material = w->templates.items[w->bodies.shape[row]].material;
-        for (uint32_t other = 0; other < n; other++) {
-            const double *law = laws_between(&w->laws, material, other);
-            if (law)
-                highest = fmax(highest, stiffest_contact(w, row, law, speed));
-        }
+    for (size_t row = 0; row < w->bodies.count; row++)
+        if (!body_absent(&w->bodies, row))
+            highest = fmax(highest,
+                           highest_frequency(w, w->bodies.shape[row], body_scale(&w->bodies, row), speed));
+    // usual bodies that are to come; smaller ones lower the step when they do
+    for (size_t i = 0; w->population && i < w->population->inlet_count; i++) {
+        const dem_inlet *inlet = &w->population->inlets[i];
+        dem_fill_draw draw;
+        for (size_t k = 0; !dem_inlet_over(w, inlet) && dem_fill_drawer_quantile(inlet->drawer, k, 0.5, &draw); k++)
+            highest = fmax(highest, highest_frequency(w, draw.shape, draw.scale, speed));
     }
-    double steps = w->time_def.contact_steps > 0 ? w->time_def.contact_steps : DEM_PI;
-    return highest > 0 ? DEM_PI / sqrt(highest) / steps : INFINITY;
+    return accurate_step(w, highest);
 }
 
 static double safety(const dem_world *w)
@@ -308,7 +336,8 @@ static double strain_unasked(const dem_world *w)
 static void forget_limits(dem_world *w)
 {
     for (size_t row = 0; row < w->bodies.count; row++)
-        w->bodies.strain_limit[row] = strain_unasked(w);
+        if (!body_absent(&w->bodies, row))
+            w->bodies.strain_limit[row] = strain_unasked(w);
 }
 
 dem_status dem_step_choose(dem_world *w, dem_error *error)
@@ -322,6 +351,16 @@ dem_status dem_step_choose(dem_world *w, dem_error *error)
     }
     w->next_step = step;
     return DEM_OK;
+}
+
+void dem_step_admit(dem_world *w, size_t row)
+{
+    if (!w->features.watch)
+        return;
+    double speed = w->features.hertz ? dem_step_impact_speed(w) : 0;
+    double step =
+        accurate_step(w, highest_frequency(w, w->bodies.shape[row], body_scale(&w->bodies, row), speed));
+    set_step(w, smaller(w->next_step, step));
 }
 
 // lowers the step where a body's own problem asks for it, and allows it the strain that its present contacts leave

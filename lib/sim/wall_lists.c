@@ -118,7 +118,7 @@ static bool expired(const dem_world *w, size_t row)
 static void look_at_body(wall_look *look, size_t row, new_list *list, double *slack)
 {
     dem_world *w = look->w;
-    if (hold_whole(body_hold(&w->bodies, row)))
+    if (body_absent(&w->bodies, row) || hold_whole(body_hold(&w->bodies, row)))
         return;
     double strides = WALL_STRIDES * (body_stride(&w->bodies, row, w->next_step) + w->sweep_speed * w->next_step);
     double margin = dem_refresh_margin(w, row, row, strides) + w->ahead;

@@ -10,6 +10,7 @@
 #include "sim/measure.h"
 #include "sim/motion.h"
 #include "sim/place.h"
+#include "sim/population.h"
 #include "sim/schemes.h"
 #include "sim/servo.h"
 #include "sim/timestep.h"
@@ -49,7 +50,7 @@ static dem_status copy_shapes(dem_world *w, const dem_scene *scene, dem_error *e
 }
 
 // what the scene needs of the kernels
-static void set_features(dem_world *w, const dem_body_def *defs, size_t count)
+static void set_features(dem_world *w, const dem_scene *scene, const dem_body_def *defs, size_t count)
 {
     dem_features *f = &w->features;
     *f = w->laws.needs;
@@ -60,6 +61,11 @@ static void set_features(dem_world *w, const dem_body_def *defs, size_t count)
     f->reaction = w->walls.servo;
     f->weighted = w->multiple == DEM_MULTIPLE_MEAN || w->multiple == DEM_MULTIPLE_MERGE;
     f->soft = w->multiple == DEM_MULTIPLE_SOFT;
+    for (size_t i = 0; i < scene->inlet_count; i++)
+        for (size_t k = 0; k < scene->inlets[i].mix_count; k++) {
+            f->offset |= !w->templates.items[scene->inlets[i].mix[k].shape].centred;
+            f->scaled |= scene->inlets[i].mix[k].size.law != DEM_SIZE_AS_IS;
+        }
     for (size_t i = 0; i < count; i++) {
         f->offset |= !w->templates.items[defs[i].shape].centred;
         f->scaled |= defs[i].scale != 1;
@@ -116,7 +122,11 @@ static dem_status make_lists(dem_world *w, dem_error *error)
 static dem_status set_reach(dem_world *w, dem_error *error)
 {
     double most = 0, least = INFINITY;
+    if (w->population)
+        dem_population_spheres(w, &least, &most);
     for (size_t row = 0; row < w->bodies.count; row++) {
+        if (body_absent(&w->bodies, row))
+            continue;
         const dem_template *t = &w->templates.items[w->bodies.shape[row]];
         most = larger(most, t->radius_max * body_scale(&w->bodies, row));
         least = smaller(least, t->radius_min * body_scale(&w->bodies, row));
@@ -134,8 +144,13 @@ static dem_status set_reach(dem_world *w, dem_error *error)
     return DEM_OK;
 }
 
-static void set_holds(dem_world *w, const dem_body_def *defs, size_t count)
+static void set_holds(dem_world *w, const dem_scene *scene, const dem_body_def *defs, size_t count)
 {
+    for (size_t i = 0; i < scene->inlet_count; i++) {
+        bool sphere = scene->inlets[i].kind == DEM_INLET_SPHERE;
+        w->held |= sphere || scene->dimension == 2;
+        w->kept |= sphere;
+    }
     for (size_t i = 0; i < count; i++) {
         w->held |= defs[i].hold != 0;
         w->kept |= (defs[i].hold & (DEM_HOLD_VELOCITY | DEM_HOLD_SPIN)) != 0;
@@ -154,17 +169,20 @@ static dem_status make_state(dem_world *w, const dem_scene *scene, dem_error *er
     if (w->walls.servo && w->multiple == DEM_MULTIPLE_SOFT)
         return dem_fail(error, DEM_BAD_INPUT,
                         "servo walls cannot measure soft contacts yet; set contacts_between_clumps to \"sum\"");
+    DEM_TRY(dem_population_create(w, scene, error));
     DEM_TRY(dem_place_bodies(w, scene, &defs, &count, error));
-    set_holds(w, defs, count);
-    set_features(w, defs, count);
+    set_holds(w, scene, defs, count);
+    set_features(w, scene, defs, count);
     dem_features still = w->features;
     still.moving = still.reaction = false;
     w->instance = dem_kernels_instance(w->kernels, still);
     w->wall_instance = dem_kernels_instance(w->kernels, w->features);
-    dem_status status = dem_bodies_create(w, defs, count, error);
+    dem_status status = dem_bodies_create(w, defs, count, dem_population_rows(w, count), error);
     free(defs);
     DEM_TRY(status);
-    if (w->bodies.count < THREADS_FROM)
+    if (w->population)
+        w->population->next_id = count;
+    if (w->bodies.count < THREADS_FROM && !dem_population_reaches(w, THREADS_FROM))
         w->threads = 1;
     w->team = dem_team_create(w->threads);
     if (!w->team)
@@ -180,6 +198,8 @@ static dem_status make_state(dem_world *w, const dem_scene *scene, dem_error *er
     for (size_t i = 0; i < count; i++)
         w->asked[i] = (uint32_t)i;
     w->asked_count = count;
+    if (w->population)
+        w->population->search = true;  // also where there is nobody who asks
     // good enough for the margins of the first lists
     w->next_step = w->last_step = w->time_def.step > 0 ? w->time_def.step : dem_step_guess(w);
     DEM_TRY(dem_lists_update(w, error));
@@ -251,6 +271,7 @@ void dem_world_destroy(dem_world *w)
     dem_templates_release(&w->templates);
     dem_laws_release(&w->laws);
     dem_walls_release(&w->walls);
+    dem_population_release(w->population);
     dem_bodies_release(&w->bodies);
     dem_pairs_release(&w->pairs);
     dem_search_destroy(w->search);
@@ -469,6 +490,11 @@ static dem_status step_once(dem_world *w, dem_error *error)
     if (w->walls.servo)
         dem_servo_move(w);
     set_time(w);
+    if (w->population) {
+        DEM_TRY(dem_population_feed(w, error));
+        if (w->parts[w->threads] != w->segment_count)
+            split_parts(w);
+    }
     if (w->asked_count)
         DEM_TRY(dem_lists_update(w, error));
     return dem_step_review(w, error);

@@ -191,6 +191,35 @@ typedef struct dem_bodies_def {
     size_t fill_count;
 } dem_bodies_def;
 
+typedef enum dem_inlet_kind { DEM_INLET_BOX, DEM_INLET_SPHERE } dem_inlet_kind;
+
+/// A place where bodies come from while the scene runs, never into an overlap: where there is no room they wait. Each
+/// is turned at random, uniformly over all orientations.
+///
+/// In a box a body appears at a random place and is free at once. In a generator sphere it appears with its centre of
+/// mass at the sphere's and keeps its velocity and spin, whatever it meets, until it is wholly outside; the next one
+/// comes after that.
+typedef struct dem_inlet_def {
+    const char *name;
+    dem_inlet_kind kind;
+    dem_vec3 low, high;  ///< of a box, which holds every sphere of a body as it appears [m]
+    dem_vec3 centre;     ///< of a generator sphere [m]
+    double radius;       ///< of a generator sphere, not less than that of the largest body [m]
+    const dem_mix_def *mix;
+    size_t mix_count;
+    bool share_by_mass;
+    double rate;             ///< bodies [1/s], or mass [kg/s]
+    bool by_mass;            ///< the rate is of mass
+    dem_vec3 velocity;       ///< mean [m/s]
+    double velocity_spread;  ///< standard deviation of each component [m/s]
+    dem_vec3 spin;           ///< mean, axes of space [rad/s]
+    double spin_spread;      ///< standard deviation of each component [rad/s]
+    double start, stop;      ///< from when to when [s]; stop INFINITY: never
+    size_t count;            ///< bodies in all; 0: no end
+    double gap;              ///< least distance to others where a body appears [m]
+    uint64_t seed;
+} dem_inlet_def;
+
 typedef enum dem_wall_kind { DEM_WALL_PLANE, DEM_WALL_CYLINDER, DEM_WALL_MESH } dem_wall_kind;
 
 /// A sine about the place at time 0: the wall is shifted by `shift` (sin(2 pi f t + phase) - sin(phase)), and turned
@@ -256,7 +285,7 @@ typedef struct dem_wall_def {
     dem_servo_def servo;   ///< comes on top, too
 } dem_wall_def;
 
-typedef enum dem_leaving { DEM_LEAVING_ERROR, DEM_LEAVING_IGNORE } dem_leaving;
+typedef enum dem_leaving { DEM_LEAVING_ERROR, DEM_LEAVING_IGNORE, DEM_LEAVING_DELETE } dem_leaving;
 
 typedef struct dem_domain_def {
     dem_vec3 low, high;  ///< infinite where not given [m]
@@ -374,6 +403,8 @@ typedef struct dem_scene {
     dem_bodies_def bodies;
     const dem_wall_def *walls;
     size_t wall_count;
+    const dem_inlet_def *inlets;
+    size_t inlet_count;
     dem_damping_def damping;
     dem_integrator_def integrator;
     dem_multiple multiple;
