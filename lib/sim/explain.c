@@ -123,6 +123,8 @@ static void put_passes(dem_buffer *out, const dem_world *w)
         dem_buffer_text(out, "  mesh contacts: exact closest points on the listed triangles\n");
     if (w->features.weighted)
         dem_buffer_text(out, "  weights of contacts that stand for the same pair\n");
+    if (w->features.soft)
+        dem_buffer_text(out, "  walls and pairs are soft: sums over the spheres of each pair, then one law for all of them\n");
     if (w->walls.count)
         dem_buffer_print(out, "  walls: %zu planes, %zu cylinders, %zu meshes\n", count_walls(w, DEM_FORM_PLANE),
                          count_walls(w, DEM_FORM_CYLINDER), meshes);
@@ -190,6 +192,7 @@ dem_status dem_world_explain(dem_world *w, char **text, dem_error *error)
     if (regions)
         dem_buffer_print(&out, "measures: stress, fabric and packing of %zu region%s with every row of the series, nothing in a step\n",
                          regions, regions == 1 ? "" : "s");
+    dem_soft_explain(w, &out);
     dem_status status = put_step(&out, w, error);
     if (status == DEM_OK && out.failed)
         status = dem_fail_memory(error);
