@@ -115,6 +115,10 @@ dem_status dem_population_create(dem_world *w, const dem_scene *scene, dem_error
         return dem_fail(error, DEM_BAD_INPUT,
                         "\"contacts_between_clumps\": \"soft\" does not go with bodies that come or go; leave out "
                         "\"inlets\" and \"leaving\": \"delete\", or take \"sum\"");
+    if (scene->bond_count)
+        return dem_fail(error, DEM_BAD_INPUT,
+                        "\"bonds\" do not go with bodies that come or go; leave out \"inlets\" and \"leaving\": "
+                        "\"delete\", or the bonds");
     dem_population *p = w->population = dem_alloc_zero(1, sizeof *p);
     if (!p)
         return dem_fail_memory(error);
