@@ -146,6 +146,8 @@ static void put_passes(dem_buffer *out, const dem_world *w)
         dem_buffer_text(out, "  walls move to their place\n");
     if (w->features.weighted)
         dem_buffer_text(out, "  weights of contacts that stand for the same pair\n");
+    if (w->features.soft)
+        dem_buffer_text(out, "  walls and pairs are soft: sums over the spheres of each pair, then one law for all of them\n");
     put_walls(out, w);
     dem_buffer_text(out, "  contacts of pairs\n");
     if (w->segment_count * DEM_SEGMENT > w->domain_bodies)
@@ -211,6 +213,7 @@ dem_status dem_world_explain(dem_world *w, char **text, dem_error *error)
     if (regions)
         dem_buffer_print(&out, "measures: stress, fabric and packing of %zu region%s with every row of the series, nothing in a step\n",
                          regions, regions == 1 ? "" : "s");
+    dem_soft_explain(w, &out);
     dem_status status = put_step(&out, w, error);
     if (status == DEM_OK && out.failed)
         status = dem_fail_memory(error);

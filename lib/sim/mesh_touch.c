@@ -200,7 +200,7 @@ static void measure_touch(dem_world *w, const dem_segment *s, dem_mesh_touches *
     dem_mesh_contact contacts[DEM_MESH_CONTACTS];
     int count = find_contacts(wall, t, touch, ball, w->reach + w->ahead, contacts);
     if (count || touch->last_count) {
-        double overlap = count ? ball.radius - contacts[0].distance : 0;
+        double overlap = count ? larger(ball.radius - contacts[0].distance, 0) : 0;
         double moved = body_stride(&w->bodies, touch->a, w->last_step) + w->sweep_speed * w->last_step;
         hand_over(c, s, t, touch, contacts, count, moved + 0.1 * sqrt(ball.radius * overlap));
     }
