@@ -5,6 +5,7 @@
 #include "base/status.h"
 #include "base/text.h"
 #include "sim/bodies.h"
+#include "sim/bonds.h"
 #include "sim/contacts.h"
 #include "sim/schemes.h"
 #include "sim/timestep.h"
@@ -136,6 +137,25 @@ static void put_motion(dem_buffer *out, const dem_world *w, size_t isotropic)
         put_held(out, w);
 }
 
+static void put_bonds(dem_buffer *out, const dem_world *w)
+{
+    const dem_bonds *b = w->bonds;
+    for (size_t d = 0; d < b->def_count; d++) {
+        size_t count = 0;
+        for (size_t i = 0; i < b->count; i++)
+            count += b->items[i].def == d;
+        dem_buffer_print(out, "  bonds \"%s\": %zu, ", b->defs[d].name, count);
+        if (!b->made[d])
+            dem_buffer_print(out, "made at %g s, ", b->defs[d].at);
+        bool breaks = isfinite(b->defs[d].tensile_strength) || isfinite(b->defs[d].shear_strength);
+        dem_buffer_print(out, "%s, %s\n",
+                         b->defs[d].contact == DEM_BOND_INSTEAD ? "instead of the contact of their spheres"
+                                                                : "beside the contact of their spheres",
+                         breaks ? "breakable" : "unbreakable");
+    }
+    dem_buffer_print(out, "    %zu B a bond, a force and three moments each, added up by body\n", sizeof *b->items);
+}
+
 static void put_passes(dem_buffer *out, const dem_world *w)
 {
     size_t isotropic = 0, meshes = count_meshes(w);
@@ -152,6 +172,8 @@ static void put_passes(dem_buffer *out, const dem_world *w)
     dem_buffer_text(out, "  contacts of pairs\n");
     if (w->segment_count * DEM_SEGMENT > w->domain_bodies)
         dem_buffer_print(out, "  momenta across domains of %zu bodies\n", w->domain_bodies);
+    if (w->bonds)
+        put_bonds(out, w);
     put_motion(out, w, isotropic);
     if (w->damping.local > 0 || w->damping.viscous > 0)
         dem_buffer_text(out, "  with damping of the motion\n");
@@ -236,5 +258,7 @@ double dem_world_bytes_per_body(const dem_world *w)
         if (w->wall_contacts[form].segments)
             bytes += (double)w->wall_contacts[form].capacity * (double)dem_contact_bytes(&w->features, form);
     bytes += (double)w->segment_count * (sizeof(dem_segment) * 2 + sizeof(dem_tally) * (1 + DEM_WALL_FORMS));
+    if (w->bonds)
+        bytes += dem_bonds_bytes(w->bonds);
     return n ? bytes / (double)n : 0;
 }
