@@ -68,15 +68,24 @@ void dem_placing_release(dem_placing *p)
     free(p->near.items);
 }
 
+// from a wall that is no mesh
+static double smooth_distance(const dem_world *w, size_t wall, dem_vec3 x)
+{
+    const dem_wall *about = &w->walls.items[wall];
+    if (about->form == DEM_FORM_MESH)
+        return dem_surface_distance(&about->surface, wall_from_space(about, x));
+    return dem_wall_distance(&w->walls, wall, x);
+}
+
 double dem_placing_clearance(void *user, dem_vec3 centre, double radius)
 {
     dem_placing *p = user;
     double least = p->look;
     for (size_t i = 0; i < p->w->walls.count; i++) {
         const dem_wall *wall = &p->w->walls.items[i];
-        if (wall->form != DEM_FORM_MESH) {
+        if (!wall->mesh) {
             if (p->smooth)
-                least = smaller(least, dem_wall_distance(&p->w->walls, i, centre));
+                least = smaller(least, smooth_distance(p->w, i, centre));
             continue;
         }
         dem_vec3 x = wall_from_space(wall, centre);
@@ -93,7 +102,7 @@ double dem_placing_clearance(void *user, dem_vec3 centre, double radius)
 static bool has_meshes(const dem_world *w)
 {
     for (size_t i = 0; i < w->walls.count; i++)
-        if (w->walls.items[i].form == DEM_FORM_MESH)
+        if (w->walls.items[i].mesh)
             return true;
     return false;
 }
