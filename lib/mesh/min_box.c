@@ -19,7 +19,10 @@ enum {
     POLISHED = 4,
     MAX_TURNS = 60,
     MAX_JOINS = 25,
-    EXTREME_POINTS = 2 * EXTREME_DIRECTIONS + 6 * (MAX_JOINS + 1),
+    SHARED_JOINS = 6,
+    TILTS = 27,
+    NO_TILT = 13,
+    EXTREME_POINTS = 2 * EXTREME_DIRECTIONS + 6 * (MAX_JOINS + 1 + POLISHED * SHARED_JOINS),
     FILTER = 8
 };
 
@@ -163,8 +166,8 @@ static double extent(const point_set *set, dem_vec3 axis)
     double low = INFINITY, high = -INFINITY;
     for (size_t i = 0; i < set->count; i++) {
         double d = v3_dot(set->points[i], axis);
-        low = fmin(low, d);
-        high = fmax(high, d);
+        low = d < low ? d : low;
+        high = d > high ? d : high;
     }
     return high - low;
 }
@@ -230,7 +233,9 @@ static void tilt(const point_set *set, frame *f, double angle)
     settle(set, f);
     for (; angle > 1e-4 && idle < 2; angle /= 3) {
         frame best = *f;
-        for (int i = 0; i < 27; i++) {
+        for (int i = 0; i < TILTS; i++) {
+            if (i == NO_TILT)
+                continue;
             frame g = tilted(set, f, (int[]){i % 3 - 1, i / 3 % 3 - 1, i / 9 - 1}, angle);
             for (int k = 0; k < 3; k++) {
                 frame h = g;
@@ -380,6 +385,8 @@ static frame smallest_frame(point_set *few, const point_set *all, int threads)
                 pick = k;
         polished[taken] = best[pick];
         best[pick].volume = INFINITY;
+        for (int k = 0; k < SHARED_JOINS && join(few, all, &polished[taken]); k++)
+            settle(few, &polished[taken]);
     }
 #pragma omp parallel for num_threads(threads) schedule(dynamic, 1) if (threads > 1)
     for (size_t i = 0; i < taken; i++)
