@@ -324,6 +324,118 @@ static void what_leaves_the_plane_is_refused(void **state)
     model_free(m);
 }
 
+// ---- discs
+
+static model *discs(size_t count, double low, double high, double thickness)
+{
+    model *m = model_new();
+    m->scene.dimension = 2;
+    m->scene.gravity = v3(0, -9.81, 0);
+    m->laws[0].damping = DEM_DAMPING_RESTITUTION;
+    m->laws[0].restitution = 0.7;
+    m->laws[0].friction = DEM_FRICTION_LINEAR;
+    m->laws[0].friction_coefficient = 0.4;
+    m->shapes[model_sphere(m, 0.01)].disc_thickness = thickness;
+    dem_random r = random_stream(5, 1);
+    for (size_t i = 0; i < count; i++) {
+        dem_body_def *b = model_body(m, 0, v3(0.05 * (double)i, 0, 0.3));
+        b->scale = low + (high - low) * random_uniform(&r);
+    }
+    return m;
+}
+
+// of any size a disc is as thick as its shape
+static void discs_have_the_mass_of_their_area(void **state)
+{
+    (void)state;
+    model *m = discs(20, 0.5, 2, 0.3);
+    dem_world *w = model_world(m, 1);
+    dem_body_view v = dem_world_bodies(w);
+    for (size_t i = 0; i < v.count; i++) {
+        double r = 0.01 * v.scale[i], mass = 2500 * DEM_PI * r * r * 0.3;
+        check_close(v.mass[i], mass, 1e-14);
+        dem_world_push(w, i, v3(1, 2, 0), v3(0, 0, 3));
+    }
+    run_steps(w, 1);
+    for (size_t i = 0; i < v.count; i++) {
+        double r = 0.01 * v.scale[i], mass = 2500 * DEM_PI * r * r * 0.3, kick = 0.5e-5;
+        check_close(velocity_before(w, i).x, kick / mass, 1e-12);
+        check_close(velocity_before(w, i).y, kick * (2 / mass - 9.81), 1e-12);
+        check_close(spin_before(w, i).z, kick * 3 / (mass * r * r / 2), 1e-12);
+    }
+    dem_world_destroy(w);
+    model_free(m);
+}
+
+// down a slope a disc rolls by 2/3 of what it would slide, a ball by 5/7
+static void a_disc_rolls_as_a_disc(void **state)
+{
+    (void)state;
+    for (int disc = 0; disc < 2; disc++) {
+        model *m = discs(1, 1, 1, disc ? 1e-3 : 0);
+        double g = 9.81 * sin(0.3), mass = 2500 * (disc ? DEM_PI * 1e-4 * 1e-3 : 4 * DEM_PI / 3 * 1e-6);
+        m->scene.gravity = v3(g, -9.81 * cos(0.3), 0);
+        m->bodies[0].position = v3(0, 0.01 - mass * 9.81 * cos(0.3) / 1e4, 0);
+        model_plane(m, v3(0, 0, 0), v3(0, 1, 0));
+        dem_world *w = model_world(m, 1);
+        run_steps(w, 20000);
+        measured(w);
+        check_close(dem_world_bodies(w).velocity[0].x, g * 0.2 * (disc ? 2.0 / 3 : 5.0 / 7), 1e-3);
+        dem_world_destroy(w);
+        model_free(m);
+    }
+}
+
+static void discs_need_two_dimensions(void **state)
+{
+    (void)state;
+    model *m = discs(1, 1, 1, 1);
+    m->scene.dimension = 3;
+    dem_world *w;
+    dem_error error;
+    check(dem_world_create(NULL, &m->scene, &w, &error) == DEM_USAGE &&
+          strstr(error.text, "set the scene's dimension"));
+    model_free(m);
+}
+
+// fills of two dimensions lie in a plane, and as dense as discs can be thrown and shaken
+static void fills_lie_in_the_plane(void **state)
+{
+    (void)state;
+    for (int clumps = 0; clumps < 2; clumps++) {
+        model *m = discs(0, 1, 1, 1);
+        if (clumps)
+            model_dumbbell(m, 0.008, 0.01);
+        dem_mix_def mix[2] = {{.shape = (uint32_t)clumps,
+                               .share = 1,
+                               .size = {.law = DEM_SIZE_UNIFORM, .a = 0.01, .b = 0.02, .largest = INFINITY}}};
+        dem_fill_def fill = {.mix = mix,
+                             .mix_count = 1,
+                             .low = {0, 0, 0},
+                             .high = {0.3, 0.3, 0.01},
+                             .void_ratio = clumps ? 0.9 : 0.35,
+                             .seed = 3};
+        m->scene.bodies.fills = &fill;
+        m->scene.bodies.fill_count = 1;
+        model_plane(m, v3(0, 0, 0), v3(1, 0, 0));
+        dem_world *w = model_world(m, 1);
+        dem_body_view v = dem_world_bodies(w);
+        double area = 0;
+        for (size_t i = 0; i < v.count; i++) {
+            double r = w->templates.items[clumps].equivalent_diameter / 2 * v.scale[i];
+            area += DEM_PI * r * r;
+            check(v.position[i].z == 0.005 && v.position[i].x > 0 && v.position[i].y < 0.3);
+            dem_vec3 axis = quat_rotate(v.orientation[i], v3(0, 0, 1));
+            check(clumps || axis.z == 1);
+            check_near(axis.z, 1, 1e-15);
+        }
+        check_near(0.09 / area - 1, fill.void_ratio, 0.02);
+        check(measured(w)->contacts == 0 && dem_world_figures(w)->wall_contacts == 0);
+        dem_world_destroy(w);
+        model_free(m);
+    }
+}
+
 // ---- everything at once
 
 // free clumps that fall about fixed, moved, spun and locked ones
@@ -429,6 +541,10 @@ int main(void)
         cmocka_unit_test(a_body_falls_along_what_is_free),
         cmocka_unit_test(two_dimensions_are_three_with_a_plane_of_symmetry),
         cmocka_unit_test(what_leaves_the_plane_is_refused),
+        cmocka_unit_test(discs_have_the_mass_of_their_area),
+        cmocka_unit_test(a_disc_rolls_as_a_disc),
+        cmocka_unit_test(discs_need_two_dimensions),
+        cmocka_unit_test(fills_lie_in_the_plane),
         cmocka_unit_test(the_ledger_closes_about_held_bodies),
         cmocka_unit_test(held_bodies_go_on_from_a_saved_state_and_with_any_threads),
         cmocka_unit_test(an_automatic_step_runs_with_held_bodies),

@@ -84,26 +84,6 @@ static void without_adhesion_the_law_is_that_of_hertz(void **state)
     bench_close(&b);
 }
 
-// the integral of the force over a closed path from far to an overlap and back
-static void a_cycle_takes_the_work_of_thornton_and_ning(void **state)
-{
-    (void)state;
-    bench b = bench_spheres(soft_model(2500), 2 * R, 2 * R, -1e-9);
-    double work = 0, before = 0, step = 2e-11, deep = 2e-7;
-    for (double d = -step; d < deep; d += step) {
-        double f = force_at(&b, d);
-        work += 0.5 * (before + f) * step;
-        before = f;
-    }
-    for (double d = deep; d > 1.01 * parting(); d -= step) {
-        double f = force_at(&b, d);
-        work -= 0.5 * (before + f) * step;
-        before = f;
-    }
-    check_close(work, 7.09219597 * cbrt(pow(W, 5) * pow(R, 4) / (MODULUS * MODULUS)), 2e-3);  // of the step
-    bench_close(&b);
-}
-
 static void friction_holds_by_the_force_and_twice_the_pull_off(void **state)
 {
     (void)state;
@@ -229,7 +209,6 @@ int main(void)
         cmocka_unit_test(the_force_follows_the_curve_down_to_where_the_surfaces_part),
         cmocka_unit_test(surfaces_hold_on_only_after_they_have_touched),
         cmocka_unit_test(without_adhesion_the_law_is_that_of_hertz),
-        cmocka_unit_test(a_cycle_takes_the_work_of_thornton_and_ning),
         cmocka_unit_test(friction_holds_by_the_force_and_twice_the_pull_off),
         cmocka_unit_test(slow_spheres_stick_and_fast_ones_lose_the_work_of_the_cycle),
         cmocka_unit_test(a_sphere_hangs_from_a_ceiling_of_any_kind),

@@ -265,6 +265,37 @@ static void a_grain_across_the_border_counts_by_its_part(void **state)
     model_free(m);
 }
 
+// discs of two dimensions: the region is an area as high as they are thick
+static void among_discs_a_region_is_an_area(void **state)
+{
+    (void)state;
+    model *m = model_new();
+    const double thick = 0.003, deep = 1e-4;
+    m->scene.dimension = 2;
+    m->shapes[model_sphere(m, R)].disc_thickness = thick;
+    model_body(m, 0, v3(0, 0, 0.5));
+    dem_body_def *b = model_body(m, 0, v3(3 * R - deep, 0, 0.5));
+    b->scale = 2;
+    const dem_measure_def all[] = {{.region = DEM_REGION_BOX, .low = {-0.1, -0.1, 0}, .high = {0.1, 0.1, 0.1}},
+                                   {.region = DEM_REGION_BALL, .centre = {0, 0, 0.5}, .radius = 0.1},
+                                   {.region = DEM_REGION_BOX, .low = {-0.1, -0.1, 0}, .high = {0, 0.1, 0.1}},
+                                   {.region = DEM_REGION_WHOLE}};
+    set_measures(m, all, 4);
+    dem_world *w = model_world(m, 1);
+    const dem_measure_view *v = views_of(w);
+    double force = 1e4 * deep, length = 3 * R - deep, solid = 5 * DEM_PI * R * R * thick;
+    const double volumes[] = {0.04 * thick, DEM_PI * 0.01 * thick, 0.02 * thick, (6 * R - deep) * 4 * R * thick};
+    for (int i = 0; i < 4; i++)
+        check_close(v[i].volume, volumes[i], 1e-12);
+    for (int i = 0; i < 4; i++)
+        check_close(v[i].stress.xx, i == 2 ? 0 : force * length / volumes[i], 1e-10);
+    check_close(v[0].solid_volume, solid, 1e-12);
+    check_close(v[1].void_ratio, volumes[1] / solid - 1, 1e-12);
+    check_close(v[2].solid_volume, solid / 10, 1e-2);
+    dem_world_destroy(w);
+    model_free(m);
+}
+
 // ---- scenes
 
 static void regions_are_read_and_written(void **state)
@@ -363,6 +394,7 @@ int main(void)
         cmocka_unit_test(a_box_has_the_stress_of_its_walls),
         cmocka_unit_test(motion_is_a_stress_where_it_is_asked_for),
         cmocka_unit_test(a_grain_across_the_border_counts_by_its_part),
+        cmocka_unit_test(among_discs_a_region_is_an_area),
         cmocka_unit_test(regions_are_read_and_written),
         cmocka_unit_test(what_is_no_region_is_refused_with_its_place),
         cmocka_unit_test(a_region_that_cannot_be_is_refused_by_the_world),

@@ -254,7 +254,7 @@ static void soft_contacts_refuse_what_they_do_not_have(void **state)
 {
     (void)state;
 #define SOFT_WITH(law)                                                                                                 \
-    S "'materials': {'a': {'density': 1, 'young': 1e9, 'poisson': 0.2}},\n'contacts': [{'between': ['a', 'a'], " law     \
+    S "'materials': {'a': {'density': 1, 'young': 1e9, 'poisson': 0.2}},\n'contacts': [{'between': ['a', 'a'], " law   \
       "}],\n'contacts_between_clumps': 'soft'}"
     static const refusal cases[] = {
         {SOFT_WITH("'normal': {'stiffness': 1}, 'rolling': {'law': 'bounded', 'coefficient': 0.1}"), 4,
@@ -277,7 +277,7 @@ static void wrong_shapes_are_refused(void **state)
     static const refusal cases[] = {
         {SHAPE("'sphere': {'radius': 1}"), 2, "shapes.s: 'material' is missing (column 62); add it"},
         {SHAPE("'material': 'c', 'sphere': {'radius': 1}"), 3, "~unknown material 'c'"},
-        {SHAPE("'material': 'a'"), 2, "~needs one of 'clump', 'sphere' and 'spheres'"},
+        {SHAPE("'material': 'a'"), 2, "~needs one of 'clump', 'sphere', 'disc' and 'spheres'"},
         {SHAPE("'material': 'a', 'sphere': {'radius': 1}, 'spheres': [[0, 0, 0, 1]]"), 2, "~has more than one of"},
         {SHAPE("'material': 'a', 'sphere': {}"), 3, "~needs 'radius' or 'diameter'"},
         {SHAPE("'material': 'a', 'sphere': {'radius': 1, 'diameter': 2}"), 3, "~has both 'radius' and 'diameter'"},
@@ -382,10 +382,10 @@ static void wrong_walls_are_refused(void **state)
          "~use one of: inside, outside"},
         {WALL("'cone': {}"), 7, "~this is not built yet"},
         {WALL("'sphere': {}"), 7, "~is not built yet"},
-        {WALL(PLANE ", 'servo': {}"), 7, "~is not built yet"},
+        {WALL(PLANE ", 'servo': {}"), 7, "~'max_velocity' is missing"},
         {WALL(PLANE ", 'wear': {}"), 7, "~is not built yet"},
-        {WALL(PLANE ", 'motion': {'oscillate': {}}"), 7, "~is not built yet"},
-        {WALL(PLANE ", 'motion': {'table': 'x.csv'}"), 7, "~is not built yet"},
+        {WALL(PLANE ", 'motion': {'oscillate': {}}"), 7, "~'frequency' is missing"},
+        {WALL(PLANE ", 'motion': {'table': 'x.csv'}"), 7, "~files are not read here"},
         {WALL(PLANE ", 'motion': {'translate': {}}"), 7, "~'velocity' is missing"},
         {WALL(PLANE ", 'motion': {'rotate': {'axis': [0, 0, 1]}}"), 7, "~'rate' is missing"},
         {IN_HEAD("'walls': {'w.x-': {'material': 'rock', " PLANE
@@ -409,6 +409,13 @@ static void what_is_not_built_is_never_ignored(void **state)
         {S "'damping': {'drag': {}}}", 2, "~'density' is missing"},
         {S "'damping': {'drag': {'density': 1, 'viscosity': -1}}}", 2, "~must be at least 0"},
         {S "'damping': {'drag': {'density': 1, 'viscosity': '1 Pa'}}}", 2, "~viscosity"},
+        {S "'materials': {'a': {'density': 1}}, 'shapes': {'d': {'material': 'a',\n'disc': {'radius': 1}}}}", 3,
+         "shapes.d.disc: there are no discs in three dimensions (column 9); add 'dimension': 2 to the scene, or write "
+         "'sphere'"},
+        {S "'dimension': 2, 'materials': {'a': {}}, 'shapes': {'d': {'material': 'a',\n'disc': {'radius': 1}}}}", 3,
+         "~needs 'density' of 'a'"},
+        {S "'dimension': 2, 'materials': {'a': {}}, 'shapes': {'d': {'material': 'a',\n'disc': {}}}}", 3,
+         "~needs 'radius' or 'diameter'"},
         {S "'dimension': 4}", 2, "dimension: must be at least 2 and at most 3, not 4 (column 14); correct it"},
         {S "'dimension': '2D'}", 2, "~needs a whole number"},
         {S "'integrator': {'rotation': 'lsim'}}", 2, "unknown rotation 'lsim' (column 28); did you mean 'lsym'?"},

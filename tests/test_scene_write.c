@@ -60,11 +60,11 @@ static void check_same_scene(const dem_scene *a, const dem_scene *b)
     check(a->shape_count == b->shape_count && a->bodies.count == b->bodies.count && a->wall_count == b->wall_count);
     assert_memory_equal(&a->time, &b->time, sizeof a->time);
     assert_memory_equal(&a->domain, &b->domain, offsetof(dem_domain_def, periodic) + sizeof a->domain.periodic);
-    check(a->domain.leaving == b->domain.leaving && a->multiple == b->multiple &&
-          a->soft.tau == b->soft.tau);
+    check(a->domain.leaving == b->domain.leaving && a->multiple == b->multiple && a->soft.tau == b->soft.tau);
     assert_memory_equal(&a->integrator, &b->integrator, sizeof a->integrator);
     assert_memory_equal(&a->gravity, &b->gravity, sizeof a->gravity);
     for (size_t i = 0; i < a->shape_count; i++) {
+        check(a->shapes[i].disc_thickness == b->shapes[i].disc_thickness);
         check(a->shapes[i].sphere_radius == b->shapes[i].sphere_radius &&
               a->shapes[i].material == b->shapes[i].material);
         check(!a->shapes[i].clump == !b->shapes[i].clump);
@@ -109,6 +109,10 @@ static void check_round_trip(const char *text, const char *where)
 static void a_resolved_scene_reads_back_as_the_same(void **state)
 {
     (void)state;
+    check_round_trip("{'schema': 'dem-scene/1', 'dimension': 2, 'materials': {'a': {'density': 3}}, 'contacts': [\n"
+                     "{'between': ['a', 'a'], 'normal': {'stiffness': 1}}], 'shapes': {'d': {'disc': {'diameter': 2, "
+                     "'thickness': 0.3}, 'material': 'a'}, 'e': {'disc': {'radius': 1}, 'material': 'a'}}}",
+                     NULL);
     check_round_trip("{'schema': 'dem-scene/1'}", NULL);
     check_round_trip(SCENE_SAMPLE, scene_folder());
     check_round_trip("{'schema': 'dem-scene/1', 'contacts_between_clumps': 'soft', 'soft': {'tau': '3 um'}}", NULL);
@@ -153,7 +157,8 @@ static void a_resolved_scene_reads_back_as_the_same(void **state)
         " 'twisting': {'law': 'marshall'}, 'cohesion': {'law': 'sjkr', 'energy_density': 7},\n"
         " 'friction': {'coefficient': 1}},\n"
         "{'between': ['c', 'a'], 'normal': {'stiffness': 1}, 'rolling': {'law': 'bounded', 'coefficient': 0.1},\n"
-        " 'friction': {'coefficient': 1}, 'cohesion': {'law': 'breakable', 'tension': 3, 'shear': 4, 'bonded': 'at_touch'}}],\n"
+        " 'friction': {'coefficient': 1}, 'cohesion': {'law': 'breakable', 'tension': 3, 'shear': 4, 'bonded': "
+        "'at_touch'}}],\n"
         "'shapes': {'s': {'spheres': [[0, 0, 0, 1], [0.1, 0.7, 0.3, 0.6]], 'mass': 2, 'inertia': [1, 2, 3],\n"
         " 'material': 'a'}, 't': {'spheres': [[5, 0, 0, 1], [5.1, 0.7, 0.3, 0.6], [4, 0, 0, 0.3]],\n"
         " 'material': 'b'}}}",

@@ -24,6 +24,15 @@ typedef struct work {
     atomic_size_t next, done;
 } work;
 
+// a case asks whether to go on; how far all of them are is told between them
+static bool asked_to_stop(void *user, const char *what, double fraction)
+{
+    (void)user;
+    (void)what;
+    (void)fraction;
+    return cli_interrupted();
+}
+
 static void try_cases(void *user, int part)
 {
     (void)part;
@@ -31,7 +40,8 @@ static void try_cases(void *user, int part)
     size_t i;
     while ((i = atomic_fetch_add(&w->next, 1)) < w->count && !cli_interrupted()) {
         verified *v = &w->items[i];
-        dem_trial_run(&w->ctx, v->about, &v->trial);
+        const dem_ctx quiet = {.progress = asked_to_stop};
+        dem_trial_run(&quiet, v->about, &v->trial);
         v->ran = v->trial.status != DEM_INTERRUPTED;
         size_t done = atomic_fetch_add(&w->done, 1) + 1;
         dem_progress(&w->ctx, "cases", (double)done / (double)w->count);

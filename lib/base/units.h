@@ -15,6 +15,7 @@ typedef enum dem_dimension {
     DEM_DIMENSION_ANGLE,            ///< [rad]
     DEM_DIMENSION_ANGULAR_VELOCITY, ///< [rad/s]
     DEM_DIMENSION_MASS,             ///< [kg]
+    DEM_DIMENSION_AREA,             ///< [m^2]
     DEM_DIMENSION_INERTIA,          ///< [kg m^2]
     DEM_DIMENSION_RATE,             ///< [1/s]
     DEM_DIMENSION_VISCOSITY,        ///< [Pa s]

@@ -109,7 +109,9 @@ static dem_status place_walls(dem_results *r, dem_error *error)
     for (size_t i = 0; i < r->scene.wall_count; i++) {
         const dem_wall_def *w = &r->scene.walls[i];
         double time = isfinite(r->time) ? r->time : 0;
-        r->walls[i].position = dem_wall_pose(w->velocity, w->through, w->spin, time, &r->walls[i].orientation);
+        dem_wall_motion motion = dem_wall_motion_of(w);
+        dem_wall_moment now = dem_wall_motion_at(&motion, time);
+        r->walls[i].position = dem_wall_pose(&motion, &now, v3(0, 0, 0), &r->walls[i].orientation);
     }
     return DEM_OK;
 }

@@ -5,6 +5,7 @@
 
 #include "base/memory.h"
 #include "math/quat.h"
+#include "sim/wall_motion.h"
 
 enum {
     CORNERS = 10,   // of a square cut by six planes
@@ -16,7 +17,7 @@ static const double TOLERANCE = 1e-9;  // a plane on the side of the box is in i
 
 bool dem_wall_moves(const dem_wall_def *wall)
 {
-    return v3_norm2(wall->velocity) > 0 || v3_norm2(wall->spin) > 0;
+    return dem_wall_def_moves(wall);
 }
 
 static dem_vec3 placed(const dem_wall_view *pose, dem_vec3 x)

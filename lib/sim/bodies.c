@@ -85,16 +85,16 @@ static dem_status order_bodies(const dem_world *w, const dem_body_def *defs, dem
 
 static void put_inertia(const dem_world *w, size_t row, const dem_template *t, double scale, uint32_t hold)
 {
-    double *inertia = w->bodies.inertia + DEM_ROW * row, cube = scale * scale * scale, fifth = cube * scale * scale;
-    inertia[0] = 1 / (t->mass * cube);
+    double *inertia = w->bodies.inertia + DEM_ROW * row, bulk = template_bulk(t, scale), fifth = bulk * scale * scale;
+    inertia[0] = 1 / (t->mass * bulk);
     for (int k = 0; k < 3; k++)
         inertia[1 + k] = 1 / (t->inertia[k] * fifth);
     inertia[4] = t->centred ? 0 : t->radius_out * scale;
-    inertia[5] = t->mass * cube;
-    inertia[6] = 1 / (t->least_mass * cube);
+    inertia[5] = t->mass * bulk;
+    inertia[6] = 1 / (t->least_mass * bulk);
     inertia[7] = t->isotropic;
     if (w->damping.drag.buoyancy)
-        inertia[5] -= w->damping.drag.density * DEM_PI / 6 * pow(t->equivalent_diameter, 3) * cube;
+        inertia[5] -= w->damping.drag.density * t->volume * bulk;
     if (!hold)
         return;
     // a held body is a wall to the others

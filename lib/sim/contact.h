@@ -130,6 +130,17 @@ DEM_INLINE wide contact_strain(const dem_features f, const wide *law, const norm
     return wide_all(wall ? 1 : 2) * (step * wide_fma(step, k, c + c));
 }
 
+/// What a wall that moves by d in a step meets, over d: the spring and the dashpot.
+DEM_INLINE wide contact_hardness(const dem_features f, const wide *law, const normal_law *n, wide mass, wide per_step)
+{
+    wide c = wide_all(0);
+    if (f.rate)
+        c = law[LAW_RATE] * mass;
+    if (f.restitution)
+        c = wide_fma(law[LAW_ZETA], wide_sqrt(n->stiffness * mass), c);
+    return wide_fma(c, per_step, n->stiffness);
+}
+
 DEM_INLINE wide3 load3(double *const column[3], size_t at)
 {
     return (wide3){wide_load(column[0] + at), wide_load(column[1] + at), wide_load(column[2] + at)};
@@ -326,6 +337,11 @@ DEM_INLINE void contact_law(const dem_features f, const dem_rows *rows, const de
     if (f.watch) {
         wide strain = contact_strain(f, law, &normal, mass, wide_all(job->next_step), wall);
         wide_store(batch->at[AT_STRAIN] + g, wide_or_zero(on, strain));
+    }
+    if (wall && f.reaction) {
+        store3(c->reaction, at, force);
+        wide hardness = contact_hardness(f, law, &normal, mass, per_step);
+        wide_store(c->hardness + at, wide_or_zero(on, hardness * weight));
     }
     force = scale3(force, wide_all(job->kick));
     put3(batch, AT_FORCE, g, force);

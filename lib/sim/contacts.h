@@ -35,6 +35,10 @@
     X(double, drag[1], "N m", f->ledger && features_turning(*f), "moment not of springs, y")                           \
     X(double, drag[2], "N m", f->ledger && features_turning(*f), "moment not of springs, z")                           \
     X(double, loss, "N", f->ledger && (f->rate || f->restitution), "damped force of the last step")                    \
+    X(double, reaction[0], "N", f->reaction && walls, "force of the wall, x")                                          \
+    X(double, reaction[1], "N", f->reaction && walls, "force of the wall, y")                                          \
+    X(double, reaction[2], "N", f->reaction && walls, "force of the wall, z")                                          \
+    X(double, hardness, "N/m", f->reaction && walls, "stiffness and dashpot over the step")                            \
     X(double, weight, "-", f->weighted, "share of the force that counts")                                              \
     X(double, geometry[0], "-", mesh, "normal, x")                                                                     \
     X(double, geometry[1], "-", mesh, "normal, y")                                                                     \

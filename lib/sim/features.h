@@ -34,7 +34,8 @@
     X(ledger, "energy that contacts dissipate is summed")                                                              \
     X(soft, "one soft contact for all spheres of a pair of bodies")                                                    \
     X(watch, "contacts tell how near an automatic step is to its limit")                                               \
-    X(moving, "walls that move")
+    X(moving, "walls that move")                                                                                       \
+    X(reaction, "forces on walls are kept, for those that follow them")
 
 typedef struct dem_features {
 #define FIELD(name, about) bool name;

@@ -11,7 +11,7 @@ enum {
     REPORT = 1 << 12,  // trials between two calls of the progress
 };
 // no packing of equal balls is denser
-static const double DENSEST = 0.7405;
+static const double DENSEST = 0.7405, DENSEST_FLAT = 0.9069;
 
 bool dem_fill_stop(dem_filling *f)
 {
@@ -23,7 +23,8 @@ bool dem_fill_stop(dem_filling *f)
 double dem_fill_volume(const dem_filling *f, size_t body)
 {
     const dem_fill_draw *draw = &f->draws[f->order[body]];
-    return f->room->shapes[draw->shape].volume * draw->scale * draw->scale * draw->scale;
+    const dem_fill_shape *shape = &f->room->shapes[draw->shape];
+    return shape->volume * fill_bulk(shape, draw->scale);
 }
 
 void dem_fill_take(dem_filling *f, size_t body)
@@ -169,7 +170,7 @@ static dem_status stages(work *w, const dem_fill_shape *shapes, size_t shape_cou
     double solids = 0;
     for (size_t i = 0; i < f->count; i++)
         solids += dem_fill_volume(f, i);
-    bool hopeless = solids > DENSEST * dem_fill_box_volume(f->fill);
+    bool hopeless = solids > (there->flat ? DENSEST_FLAT : DENSEST) * dem_fill_box_volume(f->fill);
     *result = dem_fill_random(f);
     if (*result == DEM_FILL_FULL)
         *result = dem_fill_voids(f);

@@ -20,7 +20,8 @@ typedef struct dem_fill_shape {
     const dem_ball *balls;
     size_t ball_count;
     double mass;                 ///< [kg], for shares by mass
-    double volume;               ///< of the grain [m^3]
+    double volume;               ///< of the grain; of a flat fill its area times the height of the box [m^3]
+    bool flat;                   ///< mass and volume go by the square of the scale
     double equivalent_diameter;  ///< of the sphere with this volume [m]
     double radius_out;           ///< of the smallest sphere about the centre that holds all balls [m]
 } dem_fill_shape;
@@ -30,6 +31,7 @@ typedef struct dem_fill_obstacles {
     const dem_body_def *bodies;  ///< of the same shapes
     size_t body_count;
     const dem_domain_def *domain;  ///< NULL: endless
+    bool flat;                     ///< two dimensions: centres in the plane halfway up the box, turned about z only
     const dem_wall_def *walls;     ///< planes and cylinders; the position of mesh walls is asked of `clearance`
     size_t wall_count;
     /// Least distance from the surface of a ball to any other wall [m], negative where it crosses one. Shrinking the
@@ -40,7 +42,7 @@ typedef struct dem_fill_obstacles {
 
 /// Places what `fill` asks for; the caller frees *bodies. Every sphere lies inside of the box, `fill->gap` or more away
 /// from every other body and wall. On an axis on which the domain is periodic and the box as long as it, only the
-/// centres do, and periodic images count as bodies. A void ratio counts the bodies of this fill only.
+/// centres do, and periodic images count as bodies; likewise along z where the fill is flat. A void ratio counts the bodies of this fill only.
 /// `there` may be NULL. Same result for the same seed.
 /// Errors: DEM_USAGE for what cannot be, DEM_FAILED where not all fit (the text says how many did), DEM_INTERRUPTED.
 dem_status dem_fill(const dem_ctx *ctx, const dem_fill_def *fill, const dem_fill_shape *shapes, size_t shape_count,

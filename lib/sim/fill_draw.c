@@ -104,11 +104,6 @@ static dem_fill_draw draw(entry *e)
     return (dem_fill_draw){e->shape_index, diameter / e->shape->equivalent_diameter};
 }
 
-static double cube(double x)
-{
-    return x * x * x;
-}
-
 // `target`: volume of solids to come near to [m^3]; INFINITY: fill->count tells
 static dem_status draw_all(const dem_fill_def *fill, entry *entries, double target, dem_fill_draw **draws,
                            size_t *count, dem_error *error)
@@ -123,8 +118,8 @@ static dem_status draw_all(const dem_fill_def *fill, entry *entries, double targ
         if (*count >= INT32_MAX)
             return dem_fail(error, DEM_USAGE, "fill: more than 2147483647 bodies; use a smaller box or larger bodies");
         dem_fill_draw d = draw(e);
-        double amount = fill->share_by_mass ? e->shape->mass * cube(d.scale) : 1,
-               part = e->shape->volume * cube(d.scale);
+        double amount = fill->share_by_mass ? e->shape->mass * fill_bulk(e->shape, d.scale) : 1,
+               part = e->shape->volume * fill_bulk(e->shape, d.scale);
         (*draws)[(*count)++] = d;
         e->given += amount;
         given += amount;

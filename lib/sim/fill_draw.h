@@ -13,6 +13,12 @@ typedef struct dem_fill_draw {
 dem_status dem_fill_draws(const dem_fill_def *fill, const dem_fill_shape *shapes, size_t shape_count,
                           dem_fill_draw **draws, size_t *count, dem_error *error);
 
+/// Volume of a grain of that scale over that of its shape [-].
+static inline double fill_bulk(const dem_fill_shape *shape, double scale)
+{
+    return shape->flat ? scale * scale : scale * scale * scale;
+}
+
 /// Volume of the box of a fill [m^3].
 double dem_fill_box_volume(const dem_fill_def *fill);
 

@@ -33,9 +33,11 @@ static lattice lattice_of(const dem_room *room, double margin, double pitch)
             v3_set(&l.pitch, k, l.count[k] ? length / (double)l.count[k] : INFINITY);
             continue;
         }
-        length -= 2 * margin;
+        length = room->flat && k == 2 ? 0 : length - 2 * margin;
         l.count[k] = length >= 0 ? (int64_t)floor(length / pitch) + 1 : 0;
         v3_set(&l.origin, k, v3_get(room->low, k) + (l.count[k] > 1 ? margin : margin + length / 2));
+        if (room->flat && k == 2)
+            l.origin.z = room_point(room, l.origin).z;
         // layers that are alone have no neighbours along this axis; any large number will do
         v3_set(&l.pitch, k, l.count[k] > 1 ? length / (double)(l.count[k] - 1) : 4 * pitch);
     }

@@ -137,6 +137,7 @@ static bool sees_itself(const dem_room *room, const dem_room_trial *trial, bool 
 dem_room_sight dem_room_look(dem_room *room, const dem_room_trial *trial, dem_vec3 position, uint32_t without)
 {
     bool blocked = false;
+    position = room_point(room, position);
     room->near_count = 0;
     room->near_self = sees_itself(room, trial, &blocked);
     looking l = {trial, position, without};
@@ -226,6 +227,7 @@ static bool crosses_walls(const dem_room *room, const dem_room_trial *trial, dem
 
 bool dem_room_fits(dem_room *room, const dem_room_trial *trial, dem_vec3 position)
 {
+    position = room_point(room, position);
     for (size_t i = 0; i < room->near_count; i++) {
         const dem_room_body *b = &room->bodies[room->near[i].body];
         const dem_room_pose *pose = &room->poses[room->near[i].body];
@@ -268,6 +270,7 @@ bool dem_room_covered(dem_room *room, dem_vec3 centre, double half, double core)
 {
     if (core <= 0)
         return false;
+    centre = room_point(room, centre);
     covering c = {centre, half, core};
     if (clearance(room, centre, core) + half < room->gap)
         return true;

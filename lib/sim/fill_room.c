@@ -143,6 +143,7 @@ dem_status dem_room_create(dem_room *room, const dem_fill_def *fill, const dem_f
                            const dem_fill_obstacles *there, const double *radii, size_t count, dem_error *error)
 {
     *room = (dem_room){.shapes = shapes, .low = fill->low, .high = fill->high, .gap = fill->gap, .there = there};
+    room->flat = there->flat;
     if (there->domain)
         DEM_TRY(check_domain(room, there->domain, error));
     set_periods(room, there->domain);
@@ -191,6 +192,10 @@ void dem_room_take(const dem_room *room, dem_room_trial *trial, uint32_t shape, 
 void dem_room_turn(const dem_room *room, dem_room_trial *trial, dem_quat orientation)
 {
     const dem_fill_shape *shape = &room->shapes[trial->shape];
+    if (room->flat)
+        orientation = orientation.w != 0 || orientation.z != 0
+                          ? quat_unit((dem_quat){orientation.w, 0, 0, orientation.z})
+                          : (dem_quat){1, 0, 0, 0};
     dem_vec3 a = quat_rotate(orientation, v3(trial->scale, 0, 0)), b = quat_rotate(orientation, v3(0, trial->scale, 0));
     dem_vec3 c = quat_rotate(orientation, v3(0, 0, trial->scale));
     trial->orientation = orientation;
@@ -208,6 +213,7 @@ void dem_room_turn(const dem_room *room, dem_room_trial *trial, dem_quat orienta
 
 dem_vec3 dem_room_wrapped(const dem_room *room, dem_vec3 position)
 {
+    position = room_point(room, position);
     for (int k = 0; k < 3; k++) {
         if (!room->periodic[k])
             continue;
@@ -273,7 +279,7 @@ void dem_room_move(dem_room *room, uint32_t body, const dem_room_trial *trial, d
 
 bool dem_room_inside(const dem_room *room, const dem_room_trial *trial, dem_vec3 position)
 {
-    for (int k = 0; k < 3; k++) {
+    for (int k = 0; k < (room->flat ? 2 : 3); k++) {
         double x = v3_get(position, k);
         if (!room->spans[k] && (x + v3_get(trial->low, k) < v3_get(room->low, k) + room->rounding ||
                                 x + v3_get(trial->high, k) > v3_get(room->high, k) - room->rounding))
@@ -286,7 +292,9 @@ bool dem_room_range(const dem_room *room, const dem_room_trial *trial, dem_vec3 
 {
     *low = v3_sub(room->low, trial->low);
     *high = v3_sub(room->high, trial->high);
-    for (int k = 0; k < 3; k++) {
+    if (room->flat)
+        low->z = high->z = room_point(room, *low).z;
+    for (int k = 0; k < (room->flat ? 2 : 3); k++) {
         double margin = 2 * room->rounding;
         v3_set(low, k, room->spans[k] ? v3_get(room->low, k) : v3_get(*low, k) + margin);
         v3_set(high, k, room->spans[k] ? v3_get(room->high, k) : v3_get(*high, k) - margin);

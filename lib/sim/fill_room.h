@@ -56,6 +56,7 @@ typedef struct dem_room {
     bool spans[3];       ///< the box goes around a periodic domain
     bool periodic[3];
     dem_vec3 origin, period;  ///< of the grids; period 0: not periodic [m]
+    bool flat;                ///< centres are put in the middle plane along z
     double gap;               ///< with what rounding may take [m]
     double rounding;          ///< [m]
     const dem_fill_obstacles *there;
@@ -105,6 +106,12 @@ void dem_room_move(dem_room *room, uint32_t body, const dem_room_trial *trial, d
 /// Whether no point within `half` of `centre` can hold the centre of a body with that core: it would overlap a ball or
 /// cross a wall.
 bool dem_room_covered(dem_room *room, dem_vec3 centre, double half, double core);
+
+/// The point, in the plane of a flat room.
+static inline dem_vec3 room_point(const dem_room *room, dem_vec3 position)
+{
+    return v3(position.x, position.y, room->flat ? (room->low.z + room->high.z) / 2 : position.z);
+}
 
 /// The point in the periodic domain.
 dem_vec3 dem_room_wrapped(const dem_room *room, dem_vec3 position);

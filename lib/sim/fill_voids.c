@@ -89,7 +89,8 @@ static dem_filled make_voids(dem_filling *f, voids *v)
     for (int k = 0; k < 3; k++) {
         double margin = room->spans[k] ? 0 : v->core;
         v3_set(&v->origin, k, v3_get(room->low, k) + margin);
-        extent[k] = fmax(v3_get(room->high, k) - v3_get(room->low, k) - 2 * margin, 0);
+        bool alone = room->flat && k == 2;
+        extent[k] = alone ? 0 : fmax(v3_get(room->high, k) - v3_get(room->low, k) - 2 * margin, 0);
     }
     set_cells(f, v, extent, n);
     v->smallest = 0.01 * f->trial.radius;

@@ -63,6 +63,8 @@ typedef struct dem_contact_columns {
     double *attached;               ///< 1: surfaces hold on to each other [-] (jkr), or the patch touches (soft)
     double *drag[3];                ///< moment not of the springs in the last step [N m] (ledger, with any of these)
     double *loss;                   ///< elastic force that was not passed on in the last step [N] (ledger, damped)
+    double *reaction[3];            ///< force of the wall on the body [N] (walls, reaction)
+    double *hardness;               ///< stiffness and dashpot over the step [N/m] (walls, reaction)
     double *weight;                 ///< share of the force that counts [-] (weighted)
     double *geometry[7];            ///< of mesh walls: normal, overlap, point from the body's centre
 } dem_contact_columns;

@@ -4,6 +4,7 @@
 #include "sim/broad.h"
 #include "sim/contacts.h"
 #include "sim/refresh.h"
+#include "sim/servo.h"
 #include "sim/wall_lists.h"
 
 static bool finite_body(const dem_bodies *b, size_t row)
@@ -59,7 +60,8 @@ static void bound_walls(dem_world *w)
         radius = larger(radius, w->bodies.radius[i]);
     }
     dem_vec3 centre = v3_scale(v3_add(box.low, box.high), 0.5);
-    w->sweep_speed = dem_walls_speed(&w->walls, centre, box_diagonal(box) / 2 + radius + w->skin);
+    w->sweep_least = dem_walls_speed(&w->walls, centre, box_diagonal(box) / 2 + radius + w->skin);
+    w->sweep_speed = w->sweep_least + dem_servo_most(&w->walls);
 }
 
 static bool search_due(const dem_world *w)

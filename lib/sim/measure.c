@@ -123,9 +123,8 @@ static void note_wall(dem_world *w, uint32_t wall, dem_vec3 force, dem_vec3 poin
 {
     dem_wall_view *view = &w->views.walls[wall];
     const dem_wall *about = &w->walls.items[wall];
-    dem_vec3 through = v3_add(about->position, quat_rotate(about->orientation, about->through));
     view->force = v3_sub(view->force, force);
-    view->moment = v3_sub(view->moment, v3_add(v3_cross(v3_sub(point, through), force), turning));
+    view->moment = v3_sub(view->moment, v3_add(v3_cross(v3_sub(point, wall_reference(about)), force), turning));
     view->contacts++;
 }
 

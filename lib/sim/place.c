@@ -63,6 +63,7 @@ static bool make_shapes(placing *p)
                                         .ball_count = def.ball_count,
                                         .mass = t->mass,
                                         .volume = def.volume > 0 ? def.volume : volume,
+                                        .flat = t->flat,
                                         .equivalent_diameter = t->equivalent_diameter,
                                         .radius_out = t->radius_out};
     }
@@ -117,9 +118,17 @@ static dem_status add_fill(placing *p, const dem_fill_def *fill, dem_body_def **
     dem_body_def *more;
     size_t added;
     p->look = 2 * (largest_radius(p, fill) + fill->gap);
+    bool flat = p->scene->dimension == 2;
+    for (size_t i = 0; flat && i < p->w->shape_count; i++) {
+        // the void ratio is one of areas
+        double r = p->shapes[i].equivalent_diameter / 2;
+        p->shapes[i].volume = DEM_PI * r * r * (fill->high.z - fill->low.z);
+        p->shapes[i].flat = true;
+    }
     dem_fill_obstacles there = {.bodies = *bodies,
                                 .body_count = *count,
                                 .domain = &p->scene->domain,
+                                .flat = flat,
                                 .walls = p->scene->walls,
                                 .wall_count = p->scene->wall_count,
                                 .clearance = has_meshes(p->w) ? mesh_clearance : NULL,
@@ -169,8 +178,8 @@ dem_status dem_place_bodies(const dem_world *w, const dem_scene *scene, dem_body
 dem_status dem_sphere_clump(const dem_scene *scene, size_t shape, dem_clump **clump, dem_error *error)
 {
     const dem_shape_def *s = &scene->shapes[shape];
-    double r = s->sphere_radius, density = scene->materials[s->material].density, volume = 4 * DEM_PI / 3 * r * r * r;
-    double mass = density * volume, i = 0.4 * mass * r * r;
+    double r = s->sphere_radius, density = scene->materials[s->material].density, volume = dem_ball_volume(s);
+    double mass = density * volume, i = (s->disc_thickness > 0 ? 0.5 : 0.4) * mass * r * r;
     dem_ball ball = {{0, 0, 0}, r};
     dem_clump_def def = {.name = s->name,
                          .density = density,

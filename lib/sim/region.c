@@ -14,6 +14,7 @@ typedef struct grain {
     const dem_ball *balls;
     size_t ball_count;
     double volume, reach;
+    bool flat;  // a disc of two dimensions
     dem_vec3 *points;
 } grain;
 
@@ -22,6 +23,7 @@ struct dem_regions {
     dem_measure_view *views;
     size_t count;
     dem_domain_def domain;
+    double thickness;  // of discs: regions are areas of this height along z; 0: there are none
     grain *grains;
     size_t grain_count;
 };
@@ -68,11 +70,11 @@ static bool in_grain(const grain *g, dem_vec3 p)
     return false;
 }
 
-static dem_status make_grain(grain *g, const dem_clump *clump, dem_error *error)
+static dem_status make_grain(grain *g, const dem_clump *clump, bool flat, dem_error *error)
 {
     dem_clump_def def = dem_clump_view(clump);
     dem_box box = box_empty();
-    *g = (grain){def.balls, def.ball_count, def.volume, 0, dem_alloc(POINTS, sizeof *g->points)};
+    *g = (grain){def.balls, def.ball_count, def.volume, 0, flat, dem_alloc(POINTS, sizeof *g->points)};
     if (!g->points)
         return dem_fail_memory(error);
     for (size_t i = 0; i < g->ball_count; i++) {
@@ -84,7 +86,7 @@ static dem_status make_grain(grain *g, const dem_clump *clump, dem_error *error)
     dem_vec3 side = v3_sub(box.high, box.low);
     for (size_t i = 0, found = 0; found < POINTS; i++) {
         dem_vec3 p = v3(box.low.x + side.x * spread(i + 1, 2), box.low.y + side.y * spread(i + 1, 3),
-                        box.low.z + side.z * spread(i + 1, 5));
+                        flat ? 0 : box.low.z + side.z * spread(i + 1, 5));
         // very thin and scattered balls: their centres will do
         if (i > 1000 * POINTS)
             p = g->balls[found % g->ball_count].centre;
@@ -110,8 +112,13 @@ static dem_status fill_in(dem_regions *r, const dem_scene *scene, dem_clump *con
         r->items[i].name = NULL;  // the scene's
     }
     for (size_t i = 0; i < scene->shape_count; i++) {
-        DEM_TRY(make_grain(&r->grains[i], clumps[i], error));
+        r->thickness = larger(r->thickness, scene->shapes[i].disc_thickness);
+        DEM_TRY(make_grain(&r->grains[i], clumps[i], scene->shapes[i].disc_thickness > 0, error));
         r->grain_count++;
+    }
+    for (size_t i = 0; i < r->count && r->thickness > 0; i++) {
+        r->items[i].low.z = -INFINITY;
+        r->items[i].high.z = INFINITY;
     }
     return DEM_OK;
 }
@@ -255,7 +262,7 @@ static bool crosses_domain(const dem_domain_def *d, dem_vec3 x, double reach)
 static double solid_in(const dem_regions *r, const dem_measure_def *m, const dem_body_view *b, size_t i)
 {
     const grain *g = &r->grains[b->shape[i]];
-    double scale = b->scale[i], volume = g->volume * scale * scale * scale, reach = g->reach * scale;
+    double scale = b->scale[i], volume = g->volume * scale * scale * (g->flat ? 1 : scale), reach = g->reach * scale;
     double depth = m->region == DEM_REGION_WHOLE ? INFINITY : depth_of(m, b->position[i]);
     if (depth >= reach)
         return volume;
@@ -282,8 +289,8 @@ static double whole_volume(const dem_regions *r, const dem_body_view *b)
             box = box_with(box, v3_add(c, v3(radius, radius, radius)));
         }
     }
-    double volume = 1;
-    for (int k = 0; k < 3; k++) {
+    double volume = r->thickness > 0 ? r->thickness : 1;
+    for (int k = 0; k < (r->thickness > 0 ? 2 : 3); k++) {
         double low = v3_get(r->domain.low, k), high = v3_get(r->domain.high, k);
         bool closed = isfinite(low) && isfinite(high);
         double side = closed ? high - low : v3_get(box.high, k) - v3_get(box.low, k);
@@ -297,6 +304,8 @@ static double whole_volume(const dem_regions *r, const dem_body_view *b)
 static double volume_of(const dem_regions *r, const dem_measure_def *m, const dem_body_view *b)
 {
     dem_vec3 side = v3_sub(m->high, m->low);
+    if (r->thickness > 0 && m->region != DEM_REGION_WHOLE)
+        return r->thickness * (m->region == DEM_REGION_BALL ? DEM_PI * m->radius * m->radius : side.x * side.y);
     return m->region == DEM_REGION_WHOLE  ? whole_volume(r, b)
            : m->region == DEM_REGION_BALL ? 4 * DEM_PI / 3 * m->radius * m->radius * m->radius
                                           : side.x * side.y * side.z;

@@ -4,7 +4,8 @@
 /// The stress of a contact, F l / V, is spread evenly over the line between the two centres (centre and contact point
 /// at a wall), and a region gets the share of the line that lies in it: the stress of neighbouring regions adds up to
 /// that of both, and each is in balance with what acts on its border (Noll 1955). The solid volume is that of every
-/// grain that lies inside, and of one across the border the share of points spread evenly over it.
+/// grain that lies inside, and of one across the border the share of points spread evenly over it. Among discs of two
+/// dimensions a region is its area in their plane, as high as they are thick.
 #ifndef DEM_SIM_REGION_H
 #define DEM_SIM_REGION_H
 

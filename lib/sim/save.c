@@ -33,10 +33,31 @@ typedef struct block_head {
     dem_features features;
     unsigned char unused[8 - sizeof(dem_features) % 8];
     uint64_t steps, epoch_steps, step_reviewed;
-    double epoch_time, last_step, next_step, wall_path, sweep_speed, push_work;
+    double epoch_time, last_step, next_step, wall_path, sweep_speed, sweep_least, push_work;
     double energy_start, potential_start, most_energy, skin;
     uint64_t pairs;
 } block_head;
+
+static uint64_t hash_wall(uint64_t h, const dem_wall *wall)
+{
+    const dem_wall_motion *m = &wall->motion;
+    const dem_servo_def *s = &wall->servo;
+    dem_vec3 numbers[6] = {wall->point, wall->normal, m->velocity,
+                           m->through,  m->spin,      {wall->radius, wall->form, wall->material}};
+    h = hash_bytes(h, numbers, sizeof numbers);
+    dem_vec3 more[7] = {m->axis,
+                        {m->start, m->stop, m->table.cubic},
+                        s->direction,
+                        {s->on, s->stress, s->target},
+                        {s->area, s->gain, s->max_velocity},
+                        {s->mass, s->damping_rate, s->partner},
+                        {s->extent[0].length, s->extent[1].length, 0}};
+    h = hash_bytes(h, more, sizeof more);
+    h = hash_bytes(h, m->oscillations, m->oscillation_count * sizeof *m->oscillations);
+    h = hash_bytes(h, m->table.time, m->table.count * sizeof *m->table.time);
+    h = hash_bytes(h, m->table.shift, m->table.count * sizeof *m->table.shift);
+    return m->table.turn ? hash_bytes(h, m->table.turn, m->table.count * sizeof *m->table.turn) : h;
+}
 
 // what the scene fixes: shapes, laws, walls, loads
 static uint64_t hash_constants(const dem_world *w)
@@ -51,9 +72,7 @@ static uint64_t hash_constants(const dem_world *w)
     h = hash_bytes(h, w->laws.table, w->laws.material_count * w->laws.material_count * sizeof *w->laws.table);
     for (size_t i = 0; i < w->walls.count; i++) {
         const dem_wall *wall = &w->walls.items[i];
-        dem_vec3 numbers[6] = {wall->point,   wall->normal, wall->velocity,
-                               wall->through, wall->spin,   {wall->radius, wall->form, wall->material}};
-        h = hash_bytes(h, numbers, sizeof numbers);
+        h = hash_wall(h, wall);
         if (wall->mesh)
             h = hash_bytes(h, wall->mesh->mesh.vertices, wall->mesh->mesh.vertex_count * sizeof(dem_vec3));
     }
@@ -93,6 +112,7 @@ static block_head head_of(const dem_world *w)
     h.next_step = w->next_step;
     h.wall_path = w->wall_path;
     h.sweep_speed = w->sweep_speed;
+    h.sweep_least = w->sweep_least;
     h.push_work = w->push_work;
     h.energy_start = w->energy_start;
     h.potential_start = w->potential_start;
@@ -112,6 +132,7 @@ static void take_head(dem_world *w, const block_head *h)
     w->next_step = h->next_step;
     w->wall_path = h->wall_path;
     w->sweep_speed = h->sweep_speed;
+    w->sweep_least = h->sweep_least;
     w->push_work = h->push_work;
     w->energy_start = h->energy_start;
     w->potential_start = h->potential_start;
@@ -244,8 +265,17 @@ static void pass_touches(cursor *c, dem_world *w)
     }
 }
 
+static void pass_walls(cursor *c, dem_world *w)
+{
+    for (size_t i = 0; w->walls.servo && i < w->walls.count; i++) {
+        pass(c, &w->walls.items[i].travel, sizeof(double));
+        pass(c, &w->walls.items[i].speed, sizeof(double));
+    }
+}
+
 static void pass_state(cursor *c, dem_world *w)
 {
+    pass_walls(c, w);
     pass_bodies(c, w);
     pass_pairs(c, w);
     pass_contacts(c, w, &w->contacts, -1);
@@ -334,6 +364,8 @@ uint64_t dem_world_hash(const dem_world *w)
     hash = hash_bytes(hash, b->bodies, b->count * DEM_BODY_ROW * sizeof *b->bodies);
     hash = hash_bytes(hash, b->momentum, b->count * DEM_ROW * sizeof *b->momentum);
     hash = hash_bytes(hash, b->path, b->count * sizeof *b->path);
+    for (size_t i = 0; w->walls.servo && i < w->walls.count; i++)
+        hash = hash_bytes(hash, (double[]){w->walls.items[i].travel, w->walls.items[i].speed}, 2 * sizeof(double));
     for (int form = -1; form < DEM_WALL_FORMS; form++) {
         const dem_contacts *contacts = form < 0 ? &w->contacts : &w->wall_contacts[form];
         for (size_t i = 0; contacts->segments && i < w->segment_count; i++) {

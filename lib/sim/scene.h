@@ -5,11 +5,19 @@
 #include "base/json.h"
 #include "base/memory.h"
 #include "dem/scene.h"
+#include "math/vec.h"
 
 /// As dem_scene_read, from a text (comments and trailing commas allowed). `name` is for messages; paths in it are
 /// relative to `folder`; NULL: files are refused, so that nothing but the text is read.
 dem_status dem_scene_read_text(const dem_ctx *ctx, const char *text, size_t size, const char *name, const char *folder,
                                const char *const *overrides, dem_scene *scene, dem_error *error);
+
+/// The volume of a sphere or disc that is no clump [m^3].
+static inline double dem_ball_volume(const dem_shape_def *shape)
+{
+    double r = shape->sphere_radius;
+    return shape->disc_thickness > 0 ? DEM_PI * r * r * shape->disc_thickness : 4.0 / 3 * DEM_PI * r * r * r;
+}
 
 /// The equivalent diameter of a shape: of the sphere of the volume its mass stands for [m].
 double dem_shape_diameter(const dem_shape_def *shape);
@@ -41,6 +49,8 @@ typedef struct dem_wall_source {
     const char *unit;  ///< of the mesh file; NULL: not a mesh
     dem_vec3 axis;     ///< unit; spin = rate axis
     double rate;       ///< [rad/s]
+    // names of walls that a servo refers to, until all walls are known; NULL: none
+    const char *partner, *extent[2][2];
 } dem_wall_source;
 
 /// Holds everything a scene that was read points to.

@@ -28,21 +28,57 @@ static const dem_field sphere_table[] = {
 };
 static const dem_fields sphere_fields = DEM_FIELDS(sphere_table);
 
+// `given`: bit 0 the radius, bit 1 the diameter
+static dem_status set_radius(dem_scene_reader *r, const dem_scene_value *v, dem_shape_def *shape, uint64_t given,
+                             double radius, double diameter)
+{
+    bool has = dem_given(given, SPHERE_RADIUS);
+    if (has == dem_given(given, SPHERE_DIAMETER))
+        return dem_scene_refuse(r, v, "give one of them", "%s \"radius\" %s \"diameter\"", has ? "has both" : "needs",
+                                has ? "and" : "or");
+    shape->sphere_radius = has ? radius : diameter / 2;
+    const dem_material *material = &r->scene->materials[shape->material];
+    if (isnan(material->density))
+        return dem_scene_refuse(r, v, "add it to the material", "needs \"density\" of \"%.60s\"", material->name);
+    return shape->sphere_radius > 0 ? DEM_OK : dem_scene_refuse(r, v, "check its unit", "has no size");
+}
+
 static dem_status read_sphere(dem_scene_reader *r, const dem_scene_value *v, const dem_field *field, void *into)
 {
     dem_shape_def *shape = ((shape_text *)into)->shape;
     sphere_text sphere = {0};
     uint64_t given;
     DEM_TRY(dem_fields_read(r, v, field->fields, &sphere, &given));
-    bool radius = dem_given(given, SPHERE_RADIUS);
-    if (radius == dem_given(given, SPHERE_DIAMETER))
-        return dem_scene_refuse(r, v, "give one of them", "%s \"radius\" %s \"diameter\"",
-                                radius ? "has both" : "needs", radius ? "and" : "or");
-    shape->sphere_radius = radius ? sphere.radius : sphere.diameter / 2;
-    const dem_material *material = &r->scene->materials[shape->material];
-    if (isnan(material->density))
-        return dem_scene_refuse(r, v, "add it to the material", "needs \"density\" of \"%.60s\"", material->name);
-    return shape->sphere_radius > 0 ? DEM_OK : dem_scene_refuse(r, v, "check its unit", "has no size");
+    return set_radius(r, v, shape, given, sphere.radius, sphere.diameter);
+}
+
+// a disc of two dimensions
+typedef struct disc_text {
+    double radius, diameter, thickness;
+} disc_text;
+
+enum { DISC_RADIUS, DISC_DIAMETER, DISC_THICKNESS };
+static const dem_field disc_table[] = {
+    [DISC_RADIUS] = {"radius", dem_field_quantity, .at = offsetof(disc_text, radius), .dimension = DEM_DIMENSION_LENGTH,
+                     .range = DEM_RANGE_POSITIVE},
+    [DISC_DIAMETER] = {"diameter", dem_field_quantity, .at = offsetof(disc_text, diameter),
+                       .dimension = DEM_DIMENSION_LENGTH, .range = DEM_RANGE_POSITIVE},
+    [DISC_THICKNESS] = {"thickness", dem_field_quantity, .at = offsetof(disc_text, thickness),
+                        .dimension = DEM_DIMENSION_LENGTH, .range = DEM_RANGE_POSITIVE},
+};
+static const dem_fields disc_fields = DEM_FIELDS(disc_table);
+
+static dem_status read_disc(dem_scene_reader *r, const dem_scene_value *v, const dem_field *field, void *into)
+{
+    dem_shape_def *shape = ((shape_text *)into)->shape;
+    disc_text disc = {.thickness = 1};
+    uint64_t given;
+    DEM_TRY(dem_fields_read(r, v, field->fields, &disc, &given));
+    shape->disc_thickness = disc.thickness;
+    if (r->scene->dimension != 2)
+        return dem_scene_refuse(r, v, "add \"dimension\": 2 to the scene, or write \"sphere\"",
+                                "there are no discs in three dimensions");
+    return set_radius(r, v, shape, given, disc.radius, disc.diameter);
 }
 
 // ---- a clump from a file
@@ -194,11 +230,12 @@ static dem_status read_material(dem_scene_reader *r, const dem_scene_value *v, c
     return dem_field_material(r, v, field, &((shape_text *)into)->shape->material);
 }
 
-enum { SHAPE_MATERIAL, SHAPE_CLUMP, SHAPE_SPHERE, SHAPE_SPHERES, SHAPE_MASS, SHAPE_INERTIA };
+enum { SHAPE_MATERIAL, SHAPE_CLUMP, SHAPE_SPHERE, SHAPE_DISC, SHAPE_SPHERES, SHAPE_MASS, SHAPE_INERTIA };
 static const dem_field shape_table[] = {
     [SHAPE_MATERIAL] = {"material", read_material, .needed = true},
     [SHAPE_CLUMP] = {.name = "clump", .read = read_clump},
     [SHAPE_SPHERE] = {"sphere", read_sphere, .fields = &sphere_fields},
+    [SHAPE_DISC] = {"disc", read_disc, .fields = &disc_fields},
     [SHAPE_SPHERES] = {.name = "spheres", .read = read_balls},
     [SHAPE_MASS] = {"mass", dem_field_quantity, .at = offsetof(shape_text, mass), .dimension = DEM_DIMENSION_MASS,
                     .range = DEM_RANGE_POSITIVE},
@@ -213,9 +250,10 @@ static dem_status read_shape(dem_scene_reader *r, const dem_scene_value *v, cons
     shape_text text = {.shape = shape};
     uint64_t given;
     DEM_TRY(dem_fields_read(r, v, field->fields, &text, &given));
-    int forms = dem_given(given, SHAPE_CLUMP) + dem_given(given, SHAPE_SPHERE) + dem_given(given, SHAPE_SPHERES);
+    int forms = dem_given(given, SHAPE_CLUMP) + dem_given(given, SHAPE_SPHERE) + dem_given(given, SHAPE_DISC) +
+                dem_given(given, SHAPE_SPHERES);
     if (forms != 1)
-        return dem_scene_refuse(r, v, "give exactly one", "%s \"clump\", \"sphere\" and \"spheres\"",
+        return dem_scene_refuse(r, v, "give exactly one", "%s \"clump\", \"sphere\", \"disc\" and \"spheres\"",
                                 forms ? "has more than one of" : "needs one of");
     bool mass = dem_given(given, SHAPE_MASS), inertia = dem_given(given, SHAPE_INERTIA);
     if ((mass || inertia) && !dem_given(given, SHAPE_SPHERES))

@@ -2,14 +2,7 @@
 #include <stdio.h>
 #include <string.h>
 
-#include "math/vec.h"
-#include "sim/scene_reader.h"
-
-typedef struct wall_text {
-    dem_wall_def wall;
-    dem_wall_source source;
-    dem_vec3 low, high;  // of a box
-} wall_text;
+#include "sim/scene_wall.h"
 
 // ---- forms
 
@@ -54,28 +47,6 @@ static const dem_field cylinder_table[] = {
 };
 static const dem_fields cylinder_fields = DEM_FIELDS(cylinder_table);
 
-// ---- motion
-
-static const dem_field translate_table[] = {
-    {"velocity", dem_field_vector, .at = offsetof(wall_text, wall.velocity), true, DEM_DIMENSION_VELOCITY},
-};
-static const dem_fields translate_fields = DEM_FIELDS(translate_table);
-
-static const dem_field rotate_table[] = {
-    {"axis", dem_field_direction, .at = offsetof(wall_text, source.axis), true, DEM_DIMENSION_NONE},
-    {"through", dem_field_vector, .at = offsetof(wall_text, wall.through), .dimension = DEM_DIMENSION_LENGTH},
-    {"rate", dem_field_quantity, .at = offsetof(wall_text, source.rate), true, DEM_DIMENSION_ANGULAR_VELOCITY},
-};
-static const dem_fields rotate_fields = DEM_FIELDS(rotate_table);
-
-static const dem_field motion_table[] = {
-    {"translate", dem_field_object, .fields = &translate_fields},
-    {"rotate", dem_field_object, .fields = &rotate_fields},
-    DEM_UNBUILT("oscillate"),
-    DEM_UNBUILT("table"),
-};
-static const dem_fields motion_fields = DEM_FIELDS(motion_table);
-
 // ---- walls
 
 static dem_status read_unit(dem_scene_reader *r, const dem_scene_value *v, const dem_field *field, void *into)
@@ -89,7 +60,7 @@ static dem_status read_unit(dem_scene_reader *r, const dem_scene_value *v, const
     return DEM_OK;
 }
 
-enum { WALL_MATERIAL, WALL_PLANE, WALL_BOX, WALL_CYLINDER, WALL_MESH, WALL_UNIT, WALL_MOTION };
+enum { WALL_MATERIAL, WALL_PLANE, WALL_BOX, WALL_CYLINDER, WALL_MESH, WALL_UNIT, WALL_MOTION, WALL_SERVO };
 static const dem_field wall_table[] = {
     [WALL_MATERIAL] = {"material", dem_field_material, .at = offsetof(wall_text, wall.material), true},
     [WALL_PLANE] = {"plane", dem_field_object, .fields = &plane_fields},
@@ -97,10 +68,10 @@ static const dem_field wall_table[] = {
     [WALL_CYLINDER] = {"cylinder", dem_field_object, .fields = &cylinder_fields},
     [WALL_MESH] = {"mesh", dem_field_path, .at = offsetof(wall_text, wall.mesh_file)},
     [WALL_UNIT] = {"unit", read_unit, .at = offsetof(wall_text, source.unit)},
-    [WALL_MOTION] = {"motion", dem_field_object, .fields = &motion_fields},
+    [WALL_MOTION] = {"motion", dem_wall_read_motion, .fields = &dem_wall_motion_fields},
+    [WALL_SERVO] = {"servo", dem_wall_read_servo, .fields = &dem_wall_servo_fields},
     DEM_UNBUILT("cone"),
     DEM_UNBUILT("sphere"),
-    DEM_UNBUILT("servo"),
     DEM_UNBUILT("wear"),
 };
 const dem_fields dem_wall_fields = DEM_FIELDS(wall_table);
@@ -124,6 +95,7 @@ static dem_status add_wall(dem_scene_reader *r, const dem_scene_value *v, const 
 // x-, x+, y-, ... with normals into the box
 static dem_status add_box(dem_scene_reader *r, const dem_scene_value *v, const wall_text *text)
 {
+    size_t first = r->owner->wall_count;
     for (int i = 0; i < 6; i++) {
         dem_wall_def side = text->wall;
         size_t size = strlen(text->wall.name) + 4;
@@ -135,6 +107,7 @@ static dem_status add_box(dem_scene_reader *r, const dem_scene_value *v, const w
         side.kind = DEM_WALL_PLANE;
         side.point = i % 2 ? text->high : text->low;
         v3_set(&side.normal, i / 2, i % 2 ? -1 : 1);
+        dem_wall_servo_of_side(&side, text, i, (uint32_t)first);
         DEM_TRY(add_wall(r, v, &side, text->source));
     }
     return DEM_OK;
@@ -172,6 +145,10 @@ static dem_status read_wall(dem_scene_reader *r, const dem_scene_value *v, const
     if (dem_given(given, WALL_UNIT) && !dem_given(given, WALL_MESH))
         return dem_scene_refuse(r, v, "leave it out", "\"unit\" is the unit of a mesh file");
     text.wall.spin = v3_scale(text.source.axis, text.source.rate);
+    if (text.wall.servo.on) {
+        dem_scene_value servo = dem_scene_member(v, "servo");
+        DEM_TRY(dem_wall_check_servo(r, &servo, &text, dem_given(given, WALL_BOX), dem_given(given, WALL_PLANE)));
+    }
     if (dem_given(given, WALL_BOX))
         return add_box(r, v, &text);
     if (dem_given(given, WALL_MESH))
@@ -189,6 +166,7 @@ dem_status dem_section_walls(dem_scene_reader *r, const dem_scene_value *v, cons
         dem_scene_value member = dem_scene_member(v, name);
         DEM_TRY(read_wall(r, &member, field, name));
     }
+    DEM_TRY(dem_wall_find_names(r, v));
     r->scene->walls = r->owner->walls;
     r->scene->wall_count = r->owner->wall_count;
     return DEM_OK;

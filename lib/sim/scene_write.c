@@ -5,6 +5,7 @@
 #include "math/vec.h"
 #include "sim/hold.h"
 #include "sim/scene.h"
+#include "sim/wall_motion.h"
 #include "sim/schemes.h"
 
 static void put_vec(dem_json_writer *w, const char *key, dem_vec3 v)
@@ -225,8 +226,11 @@ static void put_shapes(dem_json_writer *w, const dem_scene *scene)
             put_spheres(w, shape->clump,
                         shape->material < scene->material_count ? scene->materials[shape->material].density : NAN);
         else {
-            dem_json_open_object(w, "sphere");
+            bool disc = shape->disc_thickness > 0;
+            dem_json_open_object(w, disc ? "disc" : "sphere");
             dem_json_put_number(w, "radius", shape->sphere_radius);
+            if (disc)
+                dem_json_put_number(w, "thickness", shape->disc_thickness);
             dem_json_close(w, '}');
         }
         dem_json_close(w, '}');
@@ -379,7 +383,44 @@ static dem_wall_source source_of(const dem_scene *scene, size_t index)
         if (spin.x == wall->spin.x && spin.y == wall->spin.y && spin.z == wall->spin.z)
             return source;
     }
-    return (dem_wall_source){"m", v3_unit(wall->spin), v3_norm(wall->spin)};
+    return (dem_wall_source){.unit = "m", .axis = v3_unit(wall->spin), .rate = v3_norm(wall->spin)};
+}
+
+static void put_axis(dem_json_writer *w, const dem_wall_def *wall)
+{
+    dem_wall_motion motion = dem_wall_motion_of(wall);
+    put_vec(w, "axis", motion.axis);
+    put_vec(w, "through", wall->through);
+}
+
+static void put_oscillations(dem_json_writer *w, const dem_wall_def *wall)
+{
+    dem_json_open_array(w, "oscillate", true);
+    for (size_t i = 0; i < wall->oscillation_count; i++) {
+        const dem_oscillation *o = &wall->oscillations[i];
+        dem_json_open_object(w, NULL);
+        put_vec(w, "amplitude", o->shift);
+        if (!(v3_norm2(o->shift) > 0))
+            put_vec(w, "direction", v3(0, 0, 1));
+        if (o->turn != 0) {
+            dem_json_put_number(w, "angle", o->turn);
+            put_axis(w, wall);
+        }
+        dem_json_put_number(w, "frequency", o->frequency);
+        dem_json_put_number(w, "phase", o->phase);
+        dem_json_close(w, '}');
+    }
+    dem_json_close(w, ']');
+}
+
+static void put_table_of_motion(dem_json_writer *w, const dem_wall_def *wall)
+{
+    dem_json_open_object(w, "table");
+    dem_json_put_string(w, "file", wall->table.file);
+    dem_json_put_string(w, "interpolation", wall->table.cubic ? "cubic" : "linear");
+    if (wall->table.turn)
+        put_axis(w, wall);
+    dem_json_close(w, '}');
 }
 
 static void put_motion(dem_json_writer *w, const dem_wall_def *wall, const dem_wall_source *source)
@@ -393,6 +434,53 @@ static void put_motion(dem_json_writer *w, const dem_wall_def *wall, const dem_w
     put_vec(w, "through", wall->through);
     dem_json_put_number(w, "rate", source->rate);
     dem_json_close(w, '}');
+    if (wall->oscillation_count)
+        put_oscillations(w, wall);
+    if (wall->table.count)
+        put_table_of_motion(w, wall);
+    dem_json_put_number(w, "start", wall->start);
+    if (wall->stop > 0)
+        dem_json_put_number(w, "stop", wall->stop);
+    dem_json_close(w, '}');
+}
+
+static void put_extents(dem_json_writer *w, const dem_scene *scene, const dem_servo_def *servo)
+{
+    bool some = false;
+    for (int k = 0; k < 2; k++)
+        some |= servo->extent[k].length > 0 || servo->extent[k].walls[0] != servo->extent[k].walls[1];
+    if (!some)
+        return;
+    dem_json_open_array(w, "extents", false);
+    for (int k = 0; k < 2; k++) {
+        const dem_servo_extent *e = &servo->extent[k];
+        if (e->length > 0) {
+            dem_json_put_number(w, NULL, e->length);
+            continue;
+        }
+        dem_json_open_array(w, NULL, false);
+        for (int i = 0; i < 2; i++)
+            dem_json_put_string(w, NULL, text_of(scene->walls[e->walls[i]].name));
+        dem_json_close(w, ']');
+    }
+    dem_json_close(w, ']');
+}
+
+static void put_servo(dem_json_writer *w, const dem_scene *scene, const dem_servo_def *servo)
+{
+    dem_json_open_object(w, "servo");
+    dem_json_put_number(w, servo->stress ? "stress" : "force", servo->target);
+    put_vec(w, "direction", servo->direction);
+    if (servo->area > 0)
+        dem_json_put_number(w, "area", servo->area);
+    put_extents(w, scene, servo);
+    dem_json_put_number(w, "gain", servo->gain);
+    dem_json_put_number(w, "max_velocity", servo->max_velocity);
+    dem_json_put_number(w, "mass", servo->mass);
+    if (servo->mass > 0)
+        dem_json_put_number(w, "damping_rate", servo->damping_rate);
+    if (servo->partner)
+        dem_json_put_string(w, "partner", text_of(scene->walls[servo->partner - 1].name));
     dem_json_close(w, '}');
 }
 
@@ -423,11 +511,17 @@ static dem_status put_walls(dem_json_writer *w, const dem_scene *scene, dem_erro
             return dem_fail(error, DEM_USAGE,
                             "the mesh of wall \"%.60s\" is in no file; write it and name it in mesh_file",
                             text_of(wall->name));
+        if (wall->table.count && !wall->table.file)
+            return dem_fail(error, DEM_USAGE,
+                            "the table of the motion of wall \"%.60s\" is in no file; write it and name it in table.file",
+                            text_of(wall->name));
         dem_wall_source source = source_of(scene, i);
         dem_json_open_object(w, text_of(wall->name));
         dem_json_put_string(w, "material", material_of(scene, wall->material));
         put_form(w, wall, &source);
         put_motion(w, wall, &source);
+        if (wall->servo.on)
+            put_servo(w, scene, &wall->servo);
         dem_json_close(w, '}');
     }
     dem_json_close(w, '}');

@@ -127,6 +127,12 @@ typedef enum dem_pass {
 } dem_pass;
 
 /// What measuring fills; see dem/world.h.
+/// What the contacts of a segment do to a servo wall.
+typedef struct dem_servo_sum {
+    double force;     ///< that pushes the bodies, along the wall's direction [N]
+    double hardness;  ///< of the contacts [N/m]
+} dem_servo_sum;
+
 typedef struct dem_views {
     uint32_t *shape, *coordination, *by_row;  ///< by_row: body of a row
     double *scale, *mass;
@@ -188,6 +194,7 @@ struct dem_world {
     double epoch_time, last_step, next_step;  ///< last_step: 0 at the start, where the momenta are of the poses' time
     double wall_path;                         ///< what sweeping walls add to paths [m]
     double sweep_speed;                       ///< of sweeping walls about the bodies, at most [m/s]
+    double sweep_least;                       ///< of them, but for what servos add [m/s]
     dem_tally *tallies;                       ///< [segments * (1 + DEM_WALL_FORMS)]
     dem_motion_tally *motion_tallies;         ///< [segments]
     double push_work;
@@ -209,6 +216,7 @@ struct dem_world {
     size_t push_count, push_capacity;
     dem_views views;
     dem_regions *regions;  ///< NULL: nothing is measured by region
+    dem_servo_sum *servo_sums;  ///< [segments * walls] (servo)
     dem_pass_time clocks[DEM_PASSES];
     uint64_t searches;  ///< for pairs, since the world was made
     double warned[8];
@@ -264,8 +272,8 @@ static inline uint32_t body_hold(const dem_bodies *b, size_t row)
 /// The mass itself, also of a body that others see without end of it [kg].
 static inline double body_mass(const dem_world *w, size_t row)
 {
-    double scale = body_scale(&w->bodies, row), cube = scale * scale * scale;
-    return w->templates.items[w->bodies.shape[row]].mass * cube;
+    const dem_template *t = &w->templates.items[w->bodies.shape[row]];
+    return t->mass * template_bulk(t, body_scale(&w->bodies, row));
 }
 
 #endif

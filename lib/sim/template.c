@@ -4,6 +4,7 @@
 
 #include "base/memory.h"
 #include "math/mat3.h"
+#include "sim/scene.h"
 
 // sizes with finite squares and cubes in the float columns, and well inside of the padding [m]
 static const double SMALLEST = 1e-18, LARGEST = 1e12;
@@ -17,6 +18,7 @@ typedef struct form {
     const dem_ball *balls;
     size_t count;
     double mass, inertia[3], volume;  // [kg], [kg m^2], [m^3]
+    double diameter;                  // of the sphere with that volume, or of a disc [m]
 } form;
 
 static const char *name_of(const char *name)
@@ -33,6 +35,9 @@ static dem_status check_shape(const dem_scene *scene, const dem_shape_def *shape
     if (shape->material >= scene->material_count)
         return dem_fail(error, DEM_USAGE, "shape %s: material %lu does not exist, there are %zu (counted from 0)", name,
                         (unsigned long)shape->material, scene->material_count);
+    if (shape->disc_thickness != 0 && (shape->clump || scene->dimension != 2 || !(shape->disc_thickness > 0)))
+        return dem_fail(error, DEM_USAGE, "shape %s: discs are spheres with a thickness in two dimensions; %s", name,
+                        scene->dimension != 2 ? "set the scene's dimension to 2" : "give a radius and a thickness");
     const dem_material *material = &scene->materials[shape->material];
     if (isnan(material->density) && !shape->clump)
         return dem_fail(error, DEM_USAGE,
@@ -48,10 +53,11 @@ static form form_of(const dem_scene *scene, const dem_shape_def *shape, dem_ball
 {
     double density = scene->materials[shape->material].density;
     if (!shape->clump) {
-        double r = shape->sphere_radius, volume = 4.0 / 3 * DEM_PI * r * r * r, mass = density * volume;
-        double moment = 0.4 * mass * r * r;
+        double r = shape->sphere_radius, volume = dem_ball_volume(shape), mass = density * volume;
+        double moment = (shape->disc_thickness > 0 ? 0.5 : 0.4) * mass * r * r;
         *single = (dem_ball){{0, 0, 0}, r};
-        return (form){single, 1, mass, {moment, moment, moment}, volume};
+        double diameter = shape->disc_thickness > 0 ? 2 * r : cbrt(6 * volume / DEM_PI);
+        return (form){single, 1, mass, {moment, moment, moment}, volume, diameter};
     }
     dem_clump_def def = dem_clump_view(shape->clump);
     double factor = isnan(density) ? 1 : density / def.density;
@@ -59,7 +65,8 @@ static form form_of(const dem_scene *scene, const dem_shape_def *shape, dem_ball
                   def.ball_count,
                   def.mass * factor,
                   {def.inertia[0] * factor, def.inertia[1] * factor, def.inertia[2] * factor},
-                  def.volume};
+                  def.volume,
+                  cbrt(6 * def.volume / DEM_PI)};
 }
 
 static dem_status check_sizes(const dem_template *t, const char *name, dem_error *error)
@@ -111,7 +118,8 @@ static void set_mass(dem_template *t, const form *f)
         t->inertia[k] = t->isotropic ? f->inertia[1] : f->inertia[(k + rename) % 3];
         t->inverse_inertia[k] = 1 / t->inertia[k];
     }
-    t->equivalent_diameter = cbrt(6 * f->volume / DEM_PI);
+    t->volume = f->volume;
+    t->equivalent_diameter = f->diameter;
 }
 
 static dem_ball sphere_of(const dem_template *t, const dem_ball *ball)
@@ -211,6 +219,7 @@ static dem_status fill_in(const dem_scene *scene, dem_templates *all, dem_error 
         dem_ball single;
         form f = form_of(scene, shape, &single);
         set_mass(t, &f);
+        t->flat = shape->disc_thickness > 0;
         t->material = shape->material;
         t->first = (uint32_t)first;
         t->count = (uint32_t)f.count;

@@ -1,6 +1,6 @@
 /// Templates: the scene's shapes prepared for running, one per shape in the same order; bodies are scaled copies.
 ///
-/// A body of scale s has lengths s, masses s^3, moments of inertia s^5 times those of its template.
+/// A body of scale s has lengths s, masses s^3, moments of inertia s^5 times those of its template (discs s^2 and s^4).
 ///
 /// *Run frame.* The rotation is split so that one axis, c, is turned about apart from a top that is symmetric about it;
 /// the split is best where |1/I_a - 1/I_b| is smallest (PHYSICS 2.2, symmetric-top splitting). The run frame is the
@@ -25,7 +25,9 @@ typedef struct dem_template {
     uint32_t float_first, float_padded;     ///< places in the columns, both multiples of DEM_TEMPLATE_PAD
     double radius_out;                      ///< from the centre of mass to the farthest point of the surface [m]
     double radius_min, radius_max;          ///< of the spheres [m]
-    double equivalent_diameter;             ///< of the sphere with the grain's volume [m]
+    double volume;                          ///< that the mass stands for [m^3]
+    double equivalent_diameter;             ///< of the sphere with the grain's volume; of a disc its own [m]
+    bool flat;                              ///< a disc: bodies keep its thickness, so that masses go by s^2
     double least_mass;                      ///< smallest mass that a contact on the surface can see, see below [kg]
     uint32_t material;
 } dem_template;
@@ -58,6 +60,12 @@ typedef struct dem_templates {
 /// arm c + r n of a contact on a sphere, r x n = c x n. It bounds the local mass of PHYSICS 1.13 for one side.
 dem_status dem_templates_create(const dem_scene *scene, dem_templates *templates, dem_error *error);
 void dem_templates_release(dem_templates *templates);
+
+/// Mass of a body of that scale over the template's [-].
+static inline double template_bulk(const dem_template *t, double scale)
+{
+    return t->flat ? scale * scale : scale * scale * scale;
+}
 
 /// Run frame -> space from principal frame -> space: x_space = R(q) x_principal = R(q to_run^-1) x_run.
 static inline dem_quat template_run_orientation(const dem_template *t, dem_quat principal)

@@ -239,7 +239,7 @@ static double stiffest_contact(const dem_world *w, size_t row, const double *law
 {
     const dem_template *t = &w->templates.items[w->bodies.shape[row]];
     double scale = body_scale(&w->bodies, row), r = t->radius_max * scale,
-           mass = t->least_mass * scale * scale * scale / 2;
+           mass = t->least_mass * template_bulk(t, scale) / 2;
     double radius = 0;
     if (law[LAW_HERTZ] > 0) {
         // the duration of an impact, as that of a spring: 2.943 d / v = pi / w

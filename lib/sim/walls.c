@@ -6,6 +6,7 @@
 #include "base/memory.h"
 #include "base/status.h"
 #include "sim/mesh_wall.h"
+#include "sim/servo.h"
 
 static const double FAR_AWAY = 1e155;  // [m] farther than any dummy body
 
@@ -15,17 +16,20 @@ static const dem_wall_form form_of[] = {
 // a surface that moves along itself stays where it is: a plane within itself, a cylinder about its own axis
 static bool sweeps(const dem_wall *w)
 {
-    double speed = v3_norm(w->velocity), rate = v3_norm(w->spin), little = 1e-12;
-    if (w->form == DEM_FORM_MESH)
-        return speed > 0 || rate > 0;
-    dem_vec3 across = v3_cross(w->spin, w->normal);
+    const dem_wall_motion *m = &w->motion;
+    double little = 1e-12;
+    if (w->servo.on || w->form == DEM_FORM_MESH)
+        return w->moves;
+    if (m->shifts && !(v3_norm2(m->shift_only) > 0))
+        return true;
+    double across = v3_norm(v3_cross(m->axis, w->normal));
     if (w->form == DEM_FORM_PLANE) {
         // in-plane rotation keeps a plane
-        return fabs(v3_dot(w->velocity, w->normal)) > little * speed || v3_norm(across) > little * rate;
+        return (m->shifts && fabs(v3_dot(m->shift_only, w->normal)) > little) || (m->turns && across > little);
     }
-    dem_vec3 aside = v3_cross(w->velocity, w->normal), off = v3_cross(v3_sub(w->point, w->through), w->normal);
-    bool about_itself = v3_norm(across) <= little * rate && v3_norm(off) <= little * fabs(w->radius);
-    return v3_norm(aside) > little * speed || (rate > 0 && !about_itself);
+    dem_vec3 aside = v3_cross(m->shift_only, w->normal), off = v3_cross(v3_sub(w->point, m->through), w->normal);
+    bool about_itself = across <= little && v3_norm(off) <= little * fabs(w->radius);
+    return (m->shifts && v3_norm(aside) > little) || (m->turns && !about_itself);
 }
 
 static dem_status make_wall(const dem_ctx *ctx, const dem_wall_def *def, dem_wall *wall, dem_error *error)
@@ -36,13 +40,13 @@ static dem_status make_wall(const dem_ctx *ctx, const dem_wall_def *def, dem_wal
                        .point = def->point,
                        .normal = v3_unit(def->normal),
                        .radius = def->outside ? -def->radius : def->radius,
-                       .velocity = def->velocity,
-                       .through = def->through,
-                       .spin = def->spin,
+                       .motion = dem_wall_motion_of(def),
+                       .servo = def->servo,
                        .orientation = {1, 0, 0, 0}};
-    if (!wall->name)
+    bool owned = dem_wall_motion_own(&wall->motion);
+    if (!wall->name || !owned)
         return dem_fail_memory(error);
-    wall->moves = v3_norm2(def->velocity) > 0 || v3_norm2(def->spin) > 0;
+    wall->moves = dem_wall_motion_any(&wall->motion) || wall->servo.on;
     wall->sweeps = wall->moves && sweeps(wall);
     if (wall->form == DEM_FORM_MESH)
         return dem_mesh_wall_create(ctx, &def->mesh, wall->name, &wall->mesh, error);
@@ -64,42 +68,36 @@ dem_status dem_walls_create(const dem_ctx *ctx, const dem_scene *scene, dem_wall
         DEM_TRY(make_wall(ctx, &scene->walls[i], &walls->items[i], error));
         walls->move |= walls->items[i].moves;
         walls->sweep |= walls->items[i].sweeps;
+        walls->servo |= walls->items[i].servo.on;
     }
     dem_walls_place(walls, 0);
-    return DEM_OK;
+    return walls->servo ? dem_servo_prepare(walls, error) : DEM_OK;
 }
 
 void dem_walls_release(dem_walls *walls)
 {
     for (size_t i = 0; i < walls->count; i++) {
         free(walls->items[i].name);
+        dem_wall_motion_release(&walls->items[i].motion);
         dem_mesh_wall_destroy(walls->items[i].mesh);
     }
     free(walls->items);
     free(walls->rows);
 }
 
-dem_vec3 dem_wall_pose(dem_vec3 velocity, dem_vec3 through_0, dem_vec3 spin, double t, dem_quat *orientation)
-{
-    double angle = v3_norm(spin) * t;
-    dem_vec3 axis = v3_unit(spin), through = v3_along(through_0, t, velocity);
-    // whole turns are taken off first: exact for long runs
-    angle = remainder(angle, 2 * DEM_PI);
-    dem_vec3 e = v3_scale(axis, sin(angle / 2));
-    *orientation = (dem_quat){cos(angle / 2), e.x, e.y, e.z};
-    return v3_sub(through, quat_rotate(*orientation, through_0));
-}
-
 static void place(dem_wall *w, double t, double *row)
 {
-    w->position = dem_wall_pose(w->velocity, w->through, w->spin, t, &w->orientation);
-    dem_vec3 through = v3_along(w->through, t, w->velocity);
+    dem_wall_moment now = dem_wall_motion_at(&w->motion, t);
+    dem_vec3 more = v3_scale(w->servo.direction, w->travel), spin = now.spin;
+    w->position = dem_wall_pose(&w->motion, &now, more, &w->orientation);
+    dem_vec3 through = v3_add(v3_add(w->motion.through, now.shift), more);
     dem_vec3 normal = wall_turn(w, w->normal), point = wall_to_space(w, w->point);
-    dem_vec3 passing = v3_sub(w->velocity, v3_cross(w->spin, through));
+    dem_vec3 velocity = v3_along(now.velocity, w->speed, w->servo.direction);
+    dem_vec3 passing = v3_sub(velocity, v3_cross(spin, through));
     double along = w->form == DEM_FORM_PLANE ? v3_dot(normal, point) : w->radius;
     memcpy(row,
            (double[DEM_WALL_ROW]){normal.x, normal.y, normal.z, along, point.x, point.y, point.z, 0, passing.x,
-                                  passing.y, passing.z, w->spin.x, w->spin.y, w->spin.z},
+                                  passing.y, passing.z, spin.x, spin.y, spin.z},
            DEM_WALL_ROW * sizeof *row);
 }
 
@@ -114,11 +112,16 @@ double dem_walls_speed(const dem_walls *walls, dem_vec3 centre, double radius)
     double speed = 0;
     for (size_t i = 0; i < walls->count; i++) {
         const double *row = walls->rows + DEM_WALL_ROW * i;
+        const dem_wall_motion *m = &walls->items[i].motion;
         if (!walls->items[i].sweeps)
             continue;
-        dem_vec3 spin = walls->items[i].spin;
-        dem_vec3 v = v3_add(v3(row[8], row[9], row[10]), v3_cross(spin, centre));
-        speed = larger(speed, v3_norm(v) + v3_norm(spin) * radius);
+        if (m->steady) {
+            dem_vec3 v = v3_add(v3(row[8], row[9], row[10]), v3_cross(m->spin, centre));
+            speed = larger(speed, v3_norm(v) + v3_norm(m->spin) * radius);
+        } else {
+            double arm = v3_distance(centre, wall_reference(&walls->items[i])) + radius + m->range;
+            speed = larger(speed, m->speed_most + m->rate_most * arm);
+        }
     }
     return speed;
 }

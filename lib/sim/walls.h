@@ -5,6 +5,7 @@
 #include "dem/scene.h"
 #include "math/quat.h"
 #include "sim/kernels.h"
+#include "sim/wall_motion.h"
 
 enum { DEM_WALL_ROW = 16 };
 
@@ -17,10 +18,12 @@ typedef struct dem_wall {
     dem_vec3 point, normal;  ///< at time 0; see dem_wall_def
     double radius;           ///< of a cylinder, negative where the bodies are outside [m]
     dem_mesh_wall *mesh;     ///< in the frame of time 0
-    dem_vec3 velocity, through, spin;
-    bool moves;         ///< its surface has a velocity
-    bool sweeps;        ///< ... and its shape does not stay in place
-    dem_vec3 position;  ///< now: where the frame of time 0 has moved to [m]
+    dem_wall_motion motion;
+    dem_servo_def servo;
+    double travel, speed;  ///< of a servo, along its direction, now [m], [m/s]
+    bool moves;            ///< its surface has a velocity
+    bool sweeps;           ///< ... and its shape does not stay in place
+    dem_vec3 position;     ///< now: where the frame of time 0 has moved to [m]
     dem_quat orientation;
 } dem_wall;
 
@@ -31,7 +34,7 @@ typedef struct dem_walls {
     dem_wall *items;
     size_t count;
     double *rows;
-    bool move, sweep;  ///< some do
+    bool move, sweep, servo;  ///< some do, some are
 } dem_walls;
 
 /// Errors: DEM_BAD_INPUT, DEM_UNAVAILABLE for a mesh without Embree.
@@ -41,11 +44,14 @@ void dem_walls_release(dem_walls *walls);
 /// Puts the walls where they are at time t.
 void dem_walls_place(dem_walls *walls, double t);
 
-/// Where the frame of time 0 has moved to at time t [m], and how it has turned; see dem_wall_def.
-dem_vec3 dem_wall_pose(dem_vec3 velocity, dem_vec3 through, dem_vec3 spin, double t, dem_quat *orientation);
-
-/// Bound of the speed of the sweeping walls' surfaces within `radius` of `centre` [m/s].
+/// Bound of the speed of the sweeping walls' surfaces within `radius` of `centre` [m/s], without what servos add.
 double dem_walls_speed(const dem_walls *walls, dem_vec3 centre, double radius);
+
+/// Where the point is now that the wall turns about at time 0, to which moments refer [m].
+static inline dem_vec3 wall_reference(const dem_wall *wall)
+{
+    return v3_add(wall->position, quat_rotate(wall->orientation, wall->motion.through));
+}
 
 /// A point of space in the wall's frame of time 0, and back.
 static inline dem_vec3 wall_from_space(const dem_wall *wall, dem_vec3 x)

@@ -67,6 +67,12 @@ static inline uint32_t model_sphere(model *m, double radius)
     return i;
 }
 
+/// The mass of a ball of "stone".
+static inline double model_ball_mass(double radius)
+{
+    return 2500 * 4 * DEM_PI / 3 * radius * radius * radius;
+}
+
 /// A clump as given: balls in the principal frame, inertia ascending.
 static inline uint32_t model_clump(model *m, const dem_ball *balls, size_t count, double mass, const double inertia[3])
 {

@@ -4,6 +4,17 @@
 
 static const dem_case *const parts[] = {
     dem_verify_chung_ooi,
+    dem_verify_impacts,
+    dem_verify_sliding,
+    dem_verify_rotation,
+    dem_verify_adhesion,
+    dem_verify_damping,
+    dem_verify_gas,
+    dem_verify_whole,
+    dem_verify_integrators,
+    dem_verify_laws,
+    dem_verify_soft,
+    dem_verify_walls,
 };
 
 const dem_case *dem_verify_case(size_t index)

@@ -115,6 +115,7 @@ typedef struct dem_shape_def {
     const char *clump_file;  ///< resolved path; NULL: none
     const dem_clump *clump;  ///< also what was read from `clump_file`
     double sphere_radius;    ///< [m]; 0: not a sphere
+    double disc_thickness;   ///< 0, or the sphere is a disc of two dimensions: m = rho pi r^2 t, I = m r^2 / 2 [m]
     uint32_t material;
 } dem_shape_def;
 
@@ -192,6 +193,47 @@ typedef struct dem_bodies_def {
 
 typedef enum dem_wall_kind { DEM_WALL_PLANE, DEM_WALL_CYLINDER, DEM_WALL_MESH } dem_wall_kind;
 
+/// A sine about the place at time 0: the wall is shifted by `shift` (sin(2 pi f t + phase) - sin(phase)), and turned
+/// likewise.
+typedef struct dem_oscillation {
+    dem_vec3 shift;    ///< amplitude [m]
+    double turn;       ///< amplitude about the wall's `axis` [rad]
+    double frequency;  ///< [Hz]
+    double phase;      ///< [rad]
+} dem_oscillation;
+
+/// Where a wall is by time, between the rows of a table; before the first and behind the last it stands still.
+typedef struct dem_wall_table {
+    const char *file;       ///< resolved path; NULL: made by hand
+    bool cubic;             ///< smooth: cubic between the rows, with the slopes of their neighbours; else straight
+    size_t count;           ///< of rows; 0: no table
+    const double *time;     ///< ascending [s]
+    const dem_vec3 *shift;  ///< [m]
+    const double *turn;     ///< about the wall's `axis` [rad]; NULL: does not turn
+} dem_wall_table;
+
+/// One of the two lengths that an area of a servo wall is the product of.
+typedef struct dem_servo_extent {
+    double length;      ///< [m]; 0: the distance between two planes as they stand
+    uint32_t walls[2];  ///< these
+} dem_servo_extent;
+
+/// A wall that moves along a direction until the bodies push back as asked (PHYSICS 5):
+/// v = gain (F - F now) / (step sum of (stiffness + damping / step) of its contacts), at most max_velocity either way.
+typedef struct dem_servo_def {
+    bool on;
+    dem_vec3 direction;          ///< unit, towards the bodies
+    bool stress;                 ///< `target` is over an area
+    double target;               ///< [N] or [Pa]
+    double area;                 ///< [m^2]; 0: from the extents
+    dem_servo_extent extent[2];  ///< both 0: a wall that has an area of its own
+    double gain;                 ///< alpha, above 0 and at most 1 [-]
+    double max_velocity;         ///< [m/s]
+    double mass;                 ///< 0: none, the velocity follows the force at once [kg]
+    double damping_rate;         ///< of a wall with a mass [1/s]
+    uint32_t partner;            ///< 1 + the wall that goes as fast the other way, both by the mean; 0: none
+} dem_servo_def;
+
 /// A rigid wall. A box is six planes. Geometry as it stands at time 0.
 typedef struct dem_wall_def {
     const char *name;
@@ -206,6 +248,12 @@ typedef struct dem_wall_def {
     dem_vec3 velocity;      ///< [m/s]
     dem_vec3 through;       ///< a point of the axis of rotation [m]
     dem_vec3 spin;          ///< angular velocity [rad/s]
+    double start, stop;     ///< velocity, spin and oscillations act between; stop 0: on and on [s]
+    const dem_oscillation *oscillations;
+    size_t oscillation_count;
+    dem_wall_table table;  ///< comes on top, and is not stopped
+    dem_vec3 axis;         ///< unit, that oscillations and table turn about; along `spin` where that is not 0
+    dem_servo_def servo;   ///< comes on top, too
 } dem_wall_def;
 
 typedef enum dem_leaving { DEM_LEAVING_ERROR, DEM_LEAVING_IGNORE } dem_leaving;
