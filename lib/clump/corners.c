@@ -152,18 +152,11 @@ static dem_ball touching_ball(const cloud *c, dem_vec3 p, dem_vec3 n)
         least[k] = LARGEST;
     for (size_t b = 0; b < c->blocks; b++) {
         const float *x = c->x + b * LANES, *y = c->y + b * LANES, *z = c->z + b * LANES;
-        float low[LANES], free2[LANES];
-        int any = 0;
         for (int k = 0; k < LANES; k++) {
             float ex = px - x[k], ey = py - y[k], ez = pz - z[k];
-            low[k] = 2 * (ex * nx + ey * ny + ez * nz - deep);
-            free2[k] = ex * ex + ey * ey + ez * ez - deep * deep;
-            any |= (low[k] > 0) & (free2[k] < least[k] * low[k]);
+            float low = ex * nx + ey * ny + ez * nz - deep, r = (ex * ex + ey * ey + ez * ez - deep * deep) / (2 * low);
+            least[k] = low > 0 && r < least[k] ? r : least[k];
         }
-        // hardly ever: no division then
-        for (int k = 0; any && k < LANES; k++)
-            if (low[k] > 0 && free2[k] < least[k] * low[k])
-                least[k] = free2[k] / low[k];
     }
     float r = least[0];
     for (int k = 1; k < LANES; k++)
