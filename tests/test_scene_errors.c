@@ -396,6 +396,27 @@ static void wrong_walls_are_refused(void **state)
     CHECK_REFUSALS(cases);
 }
 
+static void wrong_bonds_are_refused(void **state)
+{
+    (void)state;
+#define BOND(members) IN_HEAD("'bonds': {'b': {'young': 1e9, " members "}}")
+    static const refusal cases[] = {
+        {S "'bonds': 5}", 2, "~needs an object of bonds by name"},
+        {S "'bonds': {'a': {}}}", 2, "~'young' is missing"},
+        {BOND("'between': 'some'"), 7, "~write 'all'"},
+        {BOND("'between': ['rock']"), 7, "~needs a list of 2"},
+        {BOND("'between': ['rock', 'balll']"), 7, "~unknown group or shape 'rock'"},
+        {BOND("'tensile_strength': -1"), 7, "~must be above 0"},
+        {BOND("'moment_contribution': 2"), 7, "~must be at least 0 and at most 1"},
+        {BOND("'damping': -0.1"), 7, "~must be at least 0"},
+        {BOND("'contact': 'beside'"), 7, "~unknown contact 'beside'"},
+        {BOND("'gap': '1 MPa'"), 7, "~gap"},
+        {BOND("'radius_multiplier': 0"), 7, "~must be above 0"},
+        {BOND("'strength': 1"), 7, "~unknown key 'strength'"},
+    };
+    CHECK_REFUSALS(cases);
+}
+
 static void what_is_not_built_is_never_ignored(void **state)
 {
     (void)state;
@@ -404,8 +425,6 @@ static void what_is_not_built_is_never_ignored(void **state)
          "domain.leaving: 'delete' is not built yet (column 23); leave it out"},
         {S "'inlets': {'a': {}}}", 2, "~this is not built yet"},
         {S "'inlets': [1]}", 2, "~is not built yet"},
-        {S "'bonds': {'a': {}}}", 2, "~is not built yet"},
-        {S "'bonds': 5}", 2, "~is not built yet"},
         {S "'damping': {'drag': {}}}", 2, "~'density' is missing"},
         {S "'damping': {'drag': {'density': 1, 'viscosity': -1}}}", 2, "~must be at least 0"},
         {S "'damping': {'drag': {'density': 1, 'viscosity': '1 Pa'}}}", 2, "~viscosity"},
@@ -450,6 +469,7 @@ int main(void)
         cmocka_unit_test(wrong_shapes_are_refused),
         cmocka_unit_test(wrong_bodies_are_refused),
         cmocka_unit_test(wrong_walls_are_refused),
+        cmocka_unit_test(wrong_bonds_are_refused),
         cmocka_unit_test(what_is_not_built_is_never_ignored),
         cmocka_unit_test(text_that_is_no_json_is_refused_by_its_line),
     };

@@ -228,12 +228,229 @@ static void restitution_is_as_asked_at_every_number_of_spheres(void **state)
     check(restitution_of(DEM_MULTIPLE_SUM, 1000, false, 2) < 0.72);
 }
 
+// ---- Hertz
+
+static void hertz_has_the_radius_of_the_grain(void **state)
+{
+    (void)state;
+    for (int i = 0; i < 2; i++) {
+        model *m = soft_model();
+        m->laws[0].normal = DEM_NORMAL_HERTZ;
+        m->materials[0].young = 1e8;
+        model_body(m, ellipsoid(m, i == 0 ? 10 : 200), v3(0, 0, 0))->orientation = (dem_quat){0.9, 0.3, -0.2, 0.1};
+        model_plane(m, v3(0, 0, 0), v3(0, 0, 1));
+        dem_world *w = model_world(m, 1);
+        soft_place(w, 0, v3(0, 0, soft_support(w, 0, v3(0, 0, -1)) - OVERLAP), m->bodies[0].orientation);
+        soft_placed(w);
+        size_t count;
+        const dem_contact *c = dem_world_contacts(w, &count);
+        double radius = cbrt(0.63 * 0.5 * 0.397), modulus = 1e8 / (2 * (1 - 0.25 * 0.25));
+        check(count == 1);
+        check_near(c[0].overlap, OVERLAP, 0.12 * OVERLAP);
+        // the shares of the spheres add up to 1 but for those that are hardly seen
+        check_close(c[0].normal_force, 4.0 / 3 * modulus * sqrt(radius) * pow(c[0].overlap, 1.5), 1e-3);
+        dem_world_destroy(w);
+        model_free(m);
+    }
+}
+
+// ---- paths
+
+typedef struct path_figures {
+    double work, stored;  // around a closed path; largest on it [J]
+    double jump, force;   // largest change of the force in a step of `step`; largest force [N]
+} path_figures;
+
+// a twin is led around a loop of places and attitudes that keeps in touch
+static path_figures closed_path(dem_multiple multiple, size_t n, uint64_t seed)
+{
+    enum { STEPS = 1200 };
+    model *m = soft_model();
+    m->scene.multiple = multiple;
+    uint32_t shape = ellipsoid(m, n);
+    model_body(m, shape, v3(0, 0, 0));
+    model_body(m, shape, v3(10, 0, 0));
+    dem_world *w = model_world(m, 1);
+    dem_random r = random_stream(seed, 3);
+    dem_quat q[2] = {random_quat(&r), random_quat(&r)}, last_q = q[1];
+    dem_vec3 normal, last_x = v3(0, 0, 0), last_f = v3(0, 0, 0), last_t = last_f;
+    double x = soft_twin_place(w, q[0], q[1], OVERLAP, &normal);
+    dem_vec3 across = v3_normal_to(normal);
+    path_figures p = {0, 0, 0, 0};
+    for (int i = 0; i <= STEPS; i++) {
+        double a = 2 * DEM_PI * i / STEPS;
+        dem_vec3 at = v3_along(v3(x, 0, 0), 0.4 * OVERLAP * (1 - cos(a)), normal);
+        at = v3_along(at, 2 * OVERLAP * sin(a), across);
+        dem_quat turn = quat_multiply(quat_about(v3(0.02 * sin(a), 0.015 * (1 - cos(a)), -0.02 * sin(2 * a))), q[1]);
+        soft_place(w, 1, at, turn);
+        soft_placed(w);
+        dem_vec3 f = dem_world_bodies(w).force[1], t = dem_world_bodies(w).moment[1];
+        if (i > 0) {
+            dem_quat d = quat_multiply(turn, quat_conjugate(last_q));
+            dem_vec3 by = v3_scale(v3(d.x, d.y, d.z), d.w < 0 ? -2 : 2);
+            p.work += 0.5 * (v3_dot(v3_add(f, last_f), v3_sub(at, last_x)) + v3_dot(v3_add(t, last_t), by));
+            p.jump = fmax(p.jump, v3_distance(f, last_f));
+        }
+        p.stored = fmax(p.stored, measured(w)->energy.elastic);
+        p.force = fmax(p.force, v3_norm(f));
+        last_x = at;
+        last_q = turn;
+        last_f = f;
+        last_t = t;
+    }
+    dem_world_destroy(w);
+    model_free(m);
+    return p;
+}
+
+// the step of the trapezoids is 1/600 of the path, whose forces have bends
+static void a_closed_path_takes_no_work_and_forces_do_not_jump(void **state)
+{
+    (void)state;
+    for (uint64_t seed = 1; seed <= 3; seed++) {
+        path_figures p = closed_path(DEM_MULTIPLE_SOFT, 200, seed);
+        check(p.stored > 0.5 * 0.5 * K * OVERLAP * OVERLAP);
+        check(fabs(p.work) < 1e-3 * p.stored);
+        check(p.jump < 0.02 * p.force);
+    }
+    // what the path shows of the mean of all
+    path_figures mean = closed_path(DEM_MULTIPLE_MEAN, 200, 1);
+    check(fabs(mean.work) > 1e-2 * mean.stored || mean.jump > 0.05 * mean.force);
+}
+
+// ---- duplicates
+
+static void run_with_copies(size_t copies, dem_vec3 out[4])
+{
+    model *m = soft_model();
+    damp(&m->laws[0], 0.6, 0.4);
+    uint32_t shape = ellipsoid(m, 60);
+    dem_clump_def def = dem_clump_view(m->clumps[shape]);
+    dem_ball balls[120];
+    memcpy(balls, def.balls, 60 * sizeof *balls);
+    for (size_t i = 0; i < copies; i++)
+        balls[60 + i] = balls[(7 * i) % 60];
+    shape = model_clump(m, balls, 60 + copies, def.mass, def.inertia);
+    m->scene.gravity = v3(0, 0, -9.81);
+    m->scene.time.step = 1e-4;
+    model_plane(m, v3(0, 0, 0), v3(0, 0, 1));
+    model_body(m, shape, v3(0, 0, 0.6))->velocity = v3(0.2, 0, -1);
+    model_body(m, shape, v3(0.1, 0, 1.7))->orientation = (dem_quat){0.7, 0.5, 0.5, 0.1};
+    dem_world *w = model_world(m, 1);
+    run_steps(w, 4000);
+    measured(w);
+    for (int i = 0; i < 2; i++) {
+        out[2 * i] = dem_world_bodies(w).velocity[i];
+        out[2 * i + 1] = dem_world_bodies(w).spin[i];
+    }
+    dem_world_destroy(w);
+    model_free(m);
+}
+
+static void copies_of_spheres_change_nothing(void **state)
+{
+    (void)state;
+    dem_vec3 plain[4], doubled[4];
+    run_with_copies(0, plain);
+    run_with_copies(25, doubled);
+    for (int i = 0; i < 4; i++)
+        check_vec(doubled[i], plain[i], 1e-9);
+    check(v3_norm(plain[1]) > 0.01);
+}
+
+// ---- flat faces
+
+// a cube whose faces are of n x n balls; their centres span `SPAN`
+static const double SPAN = 0.8;
+static uint32_t cube(model *m, int n)
+{
+    dem_ball *balls = calloc((size_t)(n * n * n), sizeof *balls);
+    check(balls);
+    size_t count = 0;
+    for (int x = 0; x < n; x++)
+        for (int y = 0; y < n; y++)
+            for (int z = 0; z < n; z++) {
+                bool inside = x > 0 && x < n - 1 && y > 0 && y < n - 1 && z > 0 && z < n - 1;
+                if (!inside)
+                    balls[count++] = (dem_ball){
+                        v3_scale(v3(x / (n - 1.0) - 0.5, y / (n - 1.0) - 0.5, z / (n - 1.0) - 0.5), SPAN), 0.1};
+            }
+    uint32_t shape = model_clump(m, balls, count, 2500, (double[]){2500.0 / 6, 2500.0 / 6, 2500.0 / 6});
+    free(balls);
+    return shape;
+}
+
+// under a load of K OVERLAP, with D = 1.6 tau, that is (D / tau) times the spread of the face's points; k L^2 / 12 is
+// that of an even face
+static void a_cube_keeps_its_rocking_stiffness(void **state)
+{
+    (void)state;
+    for (int n = 3; n <= 9; n += 2) {
+        model *m = soft_model();
+        m->scene.soft.tau = OVERLAP / 1.6;
+        model_body(m, cube(m, n), v3(0, 0, 0));
+        model_plane(m, v3(0, 0, 0), v3(0, 0, 1));
+        dem_world *w = model_world(m, 1);
+        double low = 0.45, high = 0.6;
+        for (int i = 0; i < 40; i++) {
+            double z = 0.5 * (low + high);
+            soft_place(w, 0, v3(0, 0, z), (dem_quat){1, 0, 0, 0});
+            soft_placed(w);
+            *(dem_world_bodies(w).force[0].z > K * OVERLAP ? &low : &high) = z;
+        }
+        double moment[2];
+        for (int k = 0; k < 2; k++) {
+            soft_place(w, 0, v3(0, 0, low), quat_about(v3(0, 2e-4 * (k - 0.5), 0)));
+            soft_placed(w);
+            moment[k] = dem_world_bodies(w).moment[0].y;
+        }
+        // about the lower face's middle, which moves aside under the load
+        double rocking = (moment[0] - moment[1]) / 2e-4 / (K * SPAN * SPAN / 12);
+        check(rocking > 1 && rocking < 3.5);
+        dem_world_destroy(w);
+        model_free(m);
+    }
+}
+
+static void a_cube_rests_flat_and_does_not_creep(void **state)
+{
+    (void)state;
+    model *m = soft_model();
+    damp(&m->laws[0], 0.3, 0.3);
+    double sink = 2500 * 9.81 / 1e6;
+    m->laws[0].stiffness = 1e6;
+    m->scene.soft.tau = sink / 1.6;
+    m->scene.gravity = v3(9.81 * sin(0.2), 0, -9.81 * cos(0.2));  // within the cone of friction, tan(.29) = .3
+    m->scene.time.step = 5e-4;
+    dem_body_def *b = model_body(m, cube(m, 5), v3(0, 0, 0.5 - 0.5 * sink));
+    b->spin = v3(0.002, 0.003, 0.001);
+    model_plane(m, v3(0, 0, 0), v3(0, 0, 1));
+    dem_world *w = model_world(m, 1);
+    run_steps(w, 60000);
+    dem_vec3 x = position_now(w, 0);
+    dem_quat q = orientation_now(w, 0);
+    run_steps(w, 60000);
+    check_vec(position_now(w, 0), x, 1e-12);
+    check(angle_between(orientation_now(w, 0), q) < 1e-11);
+    check(v3_norm(velocity_before(w, 0)) < 1e-12 && v3_norm(spin_before(w, 0)) < 1e-12);
+    // it leans by the moment of its weight over the rocking stiffness, about .1 k D / (1.5 k L^2 / 8 / tau) with D =
+    // tau 1.6
+    check(fabs(x.x) < 0.04 && v3_dot(quat_rotate(q, v3(0, 0, 1)), v3(0, 0, 1)) > 1 - 3e-4);
+    dem_world_destroy(w);
+    model_free(m);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(single_spheres_are_as_with_the_sum),
         cmocka_unit_test(stiffness_does_not_depend_on_the_number_of_spheres),
         cmocka_unit_test(restitution_is_as_asked_at_every_number_of_spheres),
+        cmocka_unit_test(hertz_has_the_radius_of_the_grain),
+        cmocka_unit_test(a_closed_path_takes_no_work_and_forces_do_not_jump),
+        cmocka_unit_test(copies_of_spheres_change_nothing),
+        cmocka_unit_test(a_cube_keeps_its_rocking_stiffness),
+        cmocka_unit_test(a_cube_rests_flat_and_does_not_creep),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

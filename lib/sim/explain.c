@@ -5,6 +5,7 @@
 #include "base/status.h"
 #include "base/text.h"
 #include "sim/bodies.h"
+#include "sim/bonds.h"
 #include "sim/contacts.h"
 #include "sim/schemes.h"
 #include "sim/timestep.h"
@@ -111,6 +112,25 @@ static void put_motion(dem_buffer *out, const dem_world *w, size_t isotropic)
         put_held(out, w);
 }
 
+static void put_bonds(dem_buffer *out, const dem_world *w)
+{
+    const dem_bonds *b = w->bonds;
+    for (size_t d = 0; d < b->def_count; d++) {
+        size_t count = 0;
+        for (size_t i = 0; i < b->count; i++)
+            count += b->items[i].def == d;
+        dem_buffer_print(out, "  bonds \"%s\": %zu, ", b->defs[d].name, count);
+        if (!b->made[d])
+            dem_buffer_print(out, "made at %g s, ", b->defs[d].at);
+        bool breaks = isfinite(b->defs[d].tensile_strength) || isfinite(b->defs[d].shear_strength);
+        dem_buffer_print(out, "%s, %s\n",
+                         b->defs[d].contact == DEM_BOND_INSTEAD ? "instead of the contact of their spheres"
+                                                                : "beside the contact of their spheres",
+                         breaks ? "breakable" : "unbreakable");
+    }
+    dem_buffer_print(out, "    %zu B a bond, a force and three moments each, added up by body\n", sizeof *b->items);
+}
+
 static void put_passes(dem_buffer *out, const dem_world *w)
 {
     size_t isotropic = 0, meshes = count_walls(w, DEM_FORM_MESH);
@@ -123,12 +143,16 @@ static void put_passes(dem_buffer *out, const dem_world *w)
         dem_buffer_text(out, "  mesh contacts: exact closest points on the listed triangles\n");
     if (w->features.weighted)
         dem_buffer_text(out, "  weights of contacts that stand for the same pair\n");
+    if (w->features.soft)
+        dem_buffer_text(out, "  walls and pairs are soft: sums over the spheres of each pair, then one law for all of them\n");
     if (w->walls.count)
         dem_buffer_print(out, "  walls: %zu planes, %zu cylinders, %zu meshes\n", count_walls(w, DEM_FORM_PLANE),
                          count_walls(w, DEM_FORM_CYLINDER), meshes);
     dem_buffer_text(out, "  contacts of pairs\n");
     if (w->segment_count * DEM_SEGMENT > w->domain_bodies)
         dem_buffer_print(out, "  momenta across domains of %zu bodies\n", w->domain_bodies);
+    if (w->bonds)
+        put_bonds(out, w);
     put_motion(out, w, isotropic);
     if (w->damping.local > 0 || w->damping.viscous > 0)
         dem_buffer_text(out, "  with damping of the motion\n");
@@ -190,6 +214,7 @@ dem_status dem_world_explain(dem_world *w, char **text, dem_error *error)
     if (regions)
         dem_buffer_print(&out, "measures: stress, fabric and packing of %zu region%s with every row of the series, nothing in a step\n",
                          regions, regions == 1 ? "" : "s");
+    dem_soft_explain(w, &out);
     dem_status status = put_step(&out, w, error);
     if (status == DEM_OK && out.failed)
         status = dem_fail_memory(error);
@@ -212,5 +237,7 @@ double dem_world_bytes_per_body(const dem_world *w)
         if (w->wall_contacts[form].segments)
             bytes += (double)w->wall_contacts[form].capacity * (double)dem_contact_bytes(&w->features, form);
     bytes += (double)w->segment_count * (sizeof(dem_segment) * 2 + sizeof(dem_tally) * (1 + DEM_WALL_FORMS));
+    if (w->bonds)
+        bytes += dem_bonds_bytes(w->bonds);
     return n ? bytes / (double)n : 0;
 }

@@ -165,7 +165,7 @@ static void measure_touch(dem_world *w, const dem_segment *s, dem_mesh_touches *
         dem_mesh_wall_contacts(wall->mesh, t->triangles + touch->first, touch->count,
                                wall_from_space(wall, ball.centre), ball.radius + w->reach + w->ahead, contacts, (int)touch->slot_count);
     if (count || touch->last_count) {
-        double overlap = count ? ball.radius - contacts[0].distance : 0;
+        double overlap = count ? larger(ball.radius - contacts[0].distance, 0) : 0;
         double moved = body_stride(&w->bodies, touch->a, w->last_step) + w->sweep_speed * w->last_step;
         hand_over(c, s, t, touch, contacts, count, moved + 0.1 * sqrt(ball.radius * overlap));
     }

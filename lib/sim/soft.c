@@ -28,8 +28,8 @@ static double impact_overlap(const double *law, double radius, double mass, doub
     return dem_linear_overlap(mass, law_stiffness(law, radius / 2, 0), speed);
 }
 
-// the mean over the bodies of the overlap under the softest law that each one has
-static double likely_overlap(const dem_world *w)
+// under the softest law that each one has
+double dem_soft_likely_overlap(const dem_world *w)
 {
     double speed = dem_step_impact_speed(w), sum = 0;
     size_t n = w->laws.material_count, count = 0;
@@ -54,7 +54,7 @@ static double automatic_tau(const dem_world *w)
         least = smaller(least, size_of(w, row));
     if (!isfinite(least))
         return 1;  // there are no bodies
-    return larger(TAU_LEAST * least, smaller(TAU_MOST * least, SHARE * likely_overlap(w)));
+    return larger(TAU_LEAST * least, smaller(TAU_MOST * least, SHARE * dem_soft_likely_overlap(w)));
 }
 
 // one table of weights for each shape and rung of sizes that is in use
@@ -142,6 +142,7 @@ dem_status dem_soft_create(dem_world *w, double tau, dem_error *error)
         return dem_fail_memory(error);
     for (size_t row = 0; row < w->bodies.count; row++)
         w->soft.radius[row] = size_of(w, row) / 2;
+    w->soft.automatic = !(tau > 0);
     w->soft.tau = tau > 0 ? tau : automatic_tau(w);
     w->ahead = DEM_SOFT_REACH * w->soft.tau;
     return make_weights(w, error);

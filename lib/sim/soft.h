@@ -11,11 +11,15 @@
 /// against what the pairs' speeds differ by, so that rocking on a patch is damped, too. Friction acts at the mean
 /// contact point and, as a twisting spring, by the radius of gyration of the patch.
 ///
+/// A wall is one partner, and so is each of the six sides of a box. The contacts with a mesh are grouped by normals
+/// first, deepest first, so that each face of a groove bears for itself; see dem_soft_leaders.
+///
 /// The weights are those with which a plane or a ball that touches the grain's surface has S = 1: see soft_weights.c.
 /// Radii of curvature (Hertz) are those of the equivalent spheres, never of a sphere of the clump.
 #ifndef DEM_SIM_SOFT_H
 #define DEM_SIM_SOFT_H
 
+#include "base/text.h"
 #include "dem/world.h"
 #include "sim/kernels.h"
 
@@ -24,6 +28,7 @@
 
 typedef struct dem_soft {
     double tau;          ///< [m]; 0: contacts are not soft
+    bool automatic;      ///< tau was not given
     double *weights;     ///< of the spheres of each shape and rung of sizes [-]
     uint32_t *first;     ///< [bodies] weight of the body's first sphere
     double *radius;      ///< [bodies] of curvature [m]
@@ -33,10 +38,34 @@ typedef struct dem_soft {
     const struct dem_soft_kernels *kernels;
 } dem_soft;
 
+/// The normals about which the contacts with a mesh are grouped: that of the deepest, of the deepest that is not near
+/// it, and so on. A contact belongs to the first one that it is near to.
+enum { DEM_SOFT_LEADERS = 8 };
+typedef struct dem_soft_leaders {
+    dem_vec3 normal[DEM_SOFT_LEADERS];
+    int count;
+} dem_soft_leaders;
+
+/// The group of a contact; -1: of none yet.
+static inline int soft_group(const dem_soft_leaders *leaders, dem_vec3 normal)
+{
+    const double near = 0.866;  // cosine of 30 degrees
+    for (int i = 0; i < leaders->count; i++)
+        if (normal.x * leaders->normal[i].x + normal.y * leaders->normal[i].y + normal.z * leaders->normal[i].z > near)
+            return i;
+    return leaders->count == DEM_SOFT_LEADERS ? DEM_SOFT_LEADERS - 1 : -1;
+}
+
 /// Weights for the bodies of a world whose contacts are soft; `tau` [m], 0: by the overlap of likely impacts, see
 /// soft.c. Refuses what soft contacts do not have. Nothing where contacts are not soft.
 dem_status dem_soft_create(dem_world *world, double tau, dem_error *error);
 void dem_soft_release(dem_world *world);
+
+/// The mean over the bodies of the overlap that a likely impact with their like has [m].
+double dem_soft_likely_overlap(const dem_world *world);
+
+/// What --explain says of the number of spheres that touch at once.
+void dem_soft_explain(const dem_world *world, dem_buffer *out);
 
 /// Room for the work of the segments as they are now.
 dem_status dem_soft_reserve(dem_world *world, dem_error *error);

@@ -93,7 +93,19 @@ typedef struct patch_run {
     int form;
     size_t start, end;
     const double *work;
+    const dem_soft_leaders *leaders;  // NULL: one patch for all
+    int group;
 } patch_run;
+
+static dem_vec3 normal_of(const double *row)
+{
+    return v3(row[ROW_NORMAL], row[ROW_NORMAL + 1], row[ROW_NORMAL + 2]);
+}
+
+static bool belongs(const patch_run *run, size_t at)
+{
+    return !run->leaders || soft_group(run->leaders, normal_of(run->work + DEM_ROW * at)) == run->group;
+}
 
 // places of the contacts of a run, one after the other: see segment_place
 typedef struct walker {
@@ -132,6 +144,8 @@ static patch_ends look_over(const patch_run *run)
     for (size_t i = run->start; i < run->end; i++) {
         size_t at = step_on(&k);
         double d = run->work[DEM_ROW * at + ROW_OVERLAP];
+        if (!belongs(run, at))
+            continue;
         if (d > ends.deepest) {
             ends.deepest = d;
             ends.place = at;
@@ -150,8 +164,11 @@ static void remember(const patch_run *run, const dem_contact_history *h)
 {
     const dem_contact_columns *c = &run->contacts->columns;
     walker k = walk(run);
-    for (size_t i = run->start; i < run->end; i++)
-        dem_history_put(c, run->s->begin + step_on(&k), h);
+    for (size_t i = run->start; i < run->end; i++) {
+        size_t at = step_on(&k);
+        if (belongs(run, at))
+            dem_history_put(c, run->s->begin + at, h);
+    }
 }
 
 static void sum_patch(const patch_run *run, const soft_patch_data *p, soft_sums *sums)
@@ -161,8 +178,10 @@ static void sum_patch(const patch_run *run, const soft_patch_data *p, soft_sums 
     size_t none = run->s->end - run->s->begin;
     for (size_t from = run->start; from < run->end; from += DEM_BLOCK_LANES) {
         uint32_t row[DEM_BLOCK_LANES];
-        for (size_t i = 0; i < DEM_BLOCK_LANES; i++)
-            row[i] = (uint32_t)(from + i < run->end ? step_on(&k) : none);
+        for (size_t i = 0; i < DEM_BLOCK_LANES; i++) {
+            size_t at = from + i < run->end ? step_on(&k) : none;
+            row[i] = (uint32_t)(at == none || belongs(run, at) ? at : none);
+        }
         for (size_t l = 0; l < DEM_BLOCK_LANES; l += DEM_WIDTH)
             sum_lanes(p, run->work, row + l, l, sums);
     }
@@ -240,7 +259,7 @@ static soft_spot spot_of(const dem_world *w, const patch_run *run, const patch_b
                        .times = wall ? 1 : 2};
 }
 
-static void do_patch(dem_world *w, const dem_features f, const patch_run *run, double kick, dem_tally *tally,
+static void do_patch(dem_world *w, const dem_features f, patch_run *run, double kick, dem_tally *tally,
                      dem_contact_record *records)
 {
     patch_ends ends = look_over(run);
@@ -283,6 +302,35 @@ static void do_patch(dem_world *w, const dem_features f, const patch_run *run, d
              v3_sub(v3_cross(p.between, r.force), r.moment), kick, r.strain_b);
 }
 
+// the next normal to group by: of the deepest contact that is in no group yet
+static bool add_leader(const patch_run *run, double reach, dem_soft_leaders *leaders)
+{
+    double deepest = -reach;
+    dem_vec3 normal = v3(0, 0, 0);
+    walker k = walk(run);
+    for (size_t i = run->start; i < run->end; i++) {
+        const double *row = run->work + DEM_ROW * step_on(&k);
+        if (row[ROW_OVERLAP] > deepest && soft_group(leaders, normal_of(row)) < 0) {
+            deepest = row[ROW_OVERLAP];
+            normal = normal_of(row);
+        }
+    }
+    if (deepest > -reach)
+        leaders->normal[leaders->count++] = normal;
+    return deepest > -reach;
+}
+
+static void do_groups(dem_world *w, const dem_features f, patch_run *run, double kick, dem_tally *tally,
+                      dem_contact_record *records)
+{
+    dem_soft_leaders leaders = {.count = 0};
+    while (leaders.count < DEM_SOFT_LEADERS && add_leader(run, w->ahead, &leaders))
+        ;
+    run->leaders = &leaders;
+    for (run->group = 0; run->group < leaders.count; run->group++)
+        do_patch(w, f, run, kick, tally, records);
+}
+
 static void segment(dem_world *w, size_t which, int form, double kick, double *work, dem_contact_record *records)
 {
     dem_contacts *contacts = form < 0 ? &w->contacts : &w->wall_contacts[form];
@@ -311,7 +359,8 @@ static void segment(dem_world *w, size_t which, int form, double kick, double *w
                 break;
         }
         if (c->a[first] < w->bodies.count)
-            do_patch(w, f, &(patch_run){contacts, s, form, start, end, work}, kick, tally, records);
+            (form == DEM_FORM_MESH ? do_groups : do_patch)(
+                w, f, &(patch_run){contacts, s, form, start, end, work, NULL, 0}, kick, tally, records);
     }
 }
 

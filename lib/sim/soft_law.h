@@ -46,6 +46,7 @@ static inline dem_features soft_features(const dem_world *w)
                           .slide_damping = f->slide_damping,
                           .ledger = f->ledger,
                           .watch = f->watch,
+                          .moving = f->moving,
                           .offset = true,
                           .scaled = true,
                           .periodic = f->periodic};
@@ -72,20 +73,24 @@ static inline double uneven_damping(const dem_features f, const double *law, dou
     return fades * c / (1 + 0.25 * step * c / mass);
 }
 
-// the spring against twisting: k_t times the square of the radius of gyration, capped by the points' mean arm
-static inline double twist(const dem_features f, const soft_spot *spot, const soft_whole *p, double slide, double cap,
-                           double rate, dem_contact_history *h, soft_result *out)
+// the spring and the dashpot against twisting: k_t and c_t times the square of the radius of gyration, capped by the
+// points' mean arm
+static inline double twist(const dem_features f, const soft_spot *spot, const soft_whole *p, double slide,
+                           double slide_damping, double cap, double rate, dem_contact_history *h, soft_result *out)
 {
     double stiffness = p->depth > 0 ? slide * p->gyration * p->gyration : 0, old = h->patch, start = h->twist;
     double kept = stiffness > old ? old / stiffness : 1, most = cap * MEAN_ARM * p->gyration;
-    double angle = start * kept + spot->last_step * rate, moment = stiffness * angle;
-    moment = larger(-most, smaller(most, moment));
-    h->twist = stiffness > 0 ? moment / stiffness : 0;
+    double spring = stiffness * (start * kept + spot->last_step * rate);
+    spring = larger(-most, smaller(most, spring));
+    h->twist = stiffness > 0 ? spring / stiffness : 0;
     h->patch = stiffness;
-    double held = moment * h->twist;
+    double held = spring * h->twist, damping = p->depth > 0 ? slide_damping * p->gyration * p->gyration : 0;
+    double moment = larger(-most, smaller(most, spring + damping * rate));
     out->elastic_turn = held / 2;
-    if (f.ledger)
-        out->lost_friction += 0.5 * (spot->last_step * (moment + old * start) * rate - (held - old * start * start));
+    if (f.ledger) {
+        out->lost_friction += 0.5 * (spot->last_step * (spring + old * start) * rate - (held - old * start * start));
+        out->lost_viscous += spot->last_step * (moment - spring) * rate;
+    }
     return moment;
 }
 
@@ -101,10 +106,9 @@ static inline dem_vec3 soft_slide(const dem_features f, const soft_spot *spot, c
     wide3 spring = spring_turn(all3(v3(h->spring[0], h->spring[1], h->spring[2])), all3(s->n), wide_all(turn));
     // the cap is by the force along the mean normal
     normal->force = normal->force * wide_all(s->along);
-    friction_law t =
-        friction(f, law, normal, wide_all(spot->reduced), wide_all(s->depth), wide_all(s->speed), wide_all(mass),
-                 spring, all3(slip), wide_all(spot->last_step), wide_less(wide_all(0), wide_all(s->depth)),
-                 wide_less(wide_all(1), wide_all(0)));
+    friction_law t = friction(f, law, normal, wide_all(spot->reduced), wide_all(s->depth), wide_all(s->speed),
+                              wide_all(mass), spring, all3(slip), wide_all(spot->last_step),
+                              wide_less(wide_all(0), wide_all(s->depth)), wide_less(wide_all(1), wide_all(0)));
     dem_vec3 after = first3(t.spring), dash = first3(t.dash);
     *slide = first_lane(t.stiffness);
     *slide_damping = first_lane(t.damping);
@@ -131,7 +135,7 @@ static inline void soft_strain(const soft_spot *spot, const soft_patch_data *p, 
         double share = k == 0 ? s->share_a : s->share_b, spread = (k == 0 ? s->spread_a : s->spread_b) - share;
         double tangent = 2 * side->brisk + gyration * side->quick;
         double taken = stiffness * share + per_tau * spread + slide * tangent;
-        double damping = c * (share + spread) + slide_damping * 2 * side->brisk;
+        double damping = c * (share + spread) + slide_damping * tangent;
         *(k == 0 ? &out->strain_a : &out->strain_b) = spot->times * h * (h * taken + 2 * damping);
     }
 }
@@ -169,7 +173,7 @@ static inline soft_result soft_act(const dem_features f, const soft_spot *spot, 
         dem_vec3 drag = soft_slide(f, spot, p, s, law, &normal, mass, h, &out, &slide, &slide_damping);
         double cap = spot->law[LAW_FRICTION] * fabs(out.net) * s->along;
         double rate = v3_dot(v3_sub(p->b->spin, p->a->spin), s->n);
-        double turning = twist(f, spot, s, slide, cap, rate, h, &out);
+        double turning = twist(f, spot, s, slide, slide_damping, cap, rate, h, &out);
         out.force = v3_add(out.force, drag);
         out.moment = v3_add(out.moment, v3_along(v3_cross(s->point, drag), turning, s->n));
     }

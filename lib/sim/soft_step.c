@@ -53,9 +53,11 @@ typedef struct patch_members {
     const dem_segment *s;
     int form;
     size_t begin, end;
-    uint32_t row[2];  // the body in question, and the other one
-    bool turned;      // the body in question is the second one
-    dem_vec3 shift;   // from the other to the first one's image
+    uint32_t row[2];           // the body in question, and the other one
+    bool turned;               // the body in question is the second one
+    dem_vec3 shift;            // from the other to the first one's image
+    dem_soft_leaders leaders;  // of a mesh
+    int group;
 } patch_members;
 
 static dem_touch touch_of(const dem_world *w, const patch_members *m, size_t k)
@@ -69,11 +71,21 @@ static double weight_of(const dem_world *w, uint32_t row, uint32_t sphere)
     return w->soft.weights[w->soft.first[row] + sphere - w->templates.items[w->bodies.shape[row]].first];
 }
 
-static double deepest_of(const dem_world *w, const patch_members *m)
+static bool belongs(const patch_members *m, const dem_touch *t)
+{
+    return m->form != DEM_FORM_MESH || soft_group(&m->leaders, t->normal) == m->group;
+}
+
+static double deepest_of(const dem_world *w, const patch_members *m, dem_vec3 *normal)
 {
     double deepest = -INFINITY;
-    for (size_t k = m->begin; k < m->end; k++)
-        deepest = larger(deepest, touch_of(w, m, k).overlap);
+    for (size_t k = m->begin; k < m->end; k++) {
+        dem_touch t = touch_of(w, m, k);
+        if (t.overlap > deepest && belongs(m, &t)) {
+            deepest = t.overlap;
+            *normal = t.normal;
+        }
+    }
     return deepest;
 }
 
@@ -84,7 +96,7 @@ static void gather(const dem_world *w, const patch_members *m, double deepest, p
     double tau = w->soft.tau, square = 0;
     for (size_t k = m->begin; k < m->end; k++) {
         dem_touch t = touch_of(w, m, k);
-        if (t.overlap <= -DEM_SOFT_REACH * tau)
+        if (t.overlap <= -DEM_SOFT_REACH * tau || !belongs(m, &t))
             continue;
         double weight = weight_of(w, c->a[t.place], c->sphere_a[t.place]);
         if (m->form < 0)
@@ -137,7 +149,8 @@ static void add_tangents(const dem_world *w, const patch_members *m, const patch
 
 static void add_patch(const dem_world *w, const patch_members *m, bool listed, double k[6][6], double c[6][6])
 {
-    double tau = w->soft.tau, deepest = deepest_of(w, m);
+    dem_vec3 normal;
+    double tau = w->soft.tau, deepest = deepest_of(w, m, &normal);
     if (!(deepest > -DEM_SOFT_REACH * tau))
         return;
     patch_problem p;
@@ -175,7 +188,17 @@ static void add_patch(const dem_world *w, const patch_members *m, bool listed, d
         for (int j = 0; j < 6; j++)
             c[i][j] += times * cn * p.spread[i][j] / p.sum;
     if (ct > 0)
-        add_tangents(w, m, &p, times * ct, 0, c);
+        add_tangents(w, m, &p, times * ct, times * ct * p.gyration * p.gyration, c);
+}
+
+// the groups of a mesh, deepest first
+static void add_groups(const dem_world *w, patch_members *m, double k[6][6], double c[6][6])
+{
+    dem_vec3 normal;
+    for (m->group = -1; m->leaders.count < DEM_SOFT_LEADERS && deepest_of(w, m, &normal) > -w->ahead;)
+        m->leaders.normal[m->leaders.count++] = normal;
+    for (m->group = 0; m->group < m->leaders.count; m->group++)
+        add_patch(w, m, false, k, c);
 }
 
 static void add_pairs(const dem_world *w, size_t row, bool listed, double k[6][6], double c[6][6])
@@ -215,15 +238,18 @@ static void add_walls(const dem_world *w, size_t row, bool listed, double k[6][6
                 if (contacts->columns.a[segment_place(s, end)] != a ||
                     contacts->columns.sphere_b[segment_place(s, end)] != wall)
                     break;
-            if (a == row)
-                add_patch(w,
-                          &(patch_members){.contacts = contacts,
-                                           .s = s,
-                                           .form = form,
-                                           .begin = begin,
-                                           .end = end,
-                                           .row = {(uint32_t)row, (uint32_t)row}},
-                          listed && form != DEM_FORM_MESH, k, c);
+            if (a != row)
+                continue;
+            patch_members m = {.contacts = contacts,
+                               .s = s,
+                               .form = form,
+                               .begin = begin,
+                               .end = end,
+                               .row = {(uint32_t)row, (uint32_t)row}};
+            if (form == DEM_FORM_MESH)
+                add_groups(w, &m, k, c);
+            else
+                add_patch(w, &m, listed, k, c);
         }
     }
 }

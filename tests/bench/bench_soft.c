@@ -4,6 +4,7 @@
 #include <time.h>
 
 #include "../soft_cases.h"
+#include "sim/restitution.h"
 
 enum { ORIENTATIONS = 24 };
 
@@ -148,13 +149,201 @@ static void bounce(const bench *b)
     printf("%6zu  e %6.4f +- %6.4f  overlap %6.4f\n", b->spheres, mean, sqrt(fmax(0, square - mean * mean)), overlap);
 }
 
+// ---- an oblique impact of an ellipsoid on a plane, beside the same of a perfect ellipsoid
+
+static const dem_vec3 SEMI = {0.63, 0.5, 0.396850263};  // x the longest, as in the principal frame
+static const double MU = 0.3, RESTITUTION = 0.8;
+
+typedef struct flight {
+    dem_vec3 x, v, spin;
+    dem_quat q;
+} flight;
+
+static dem_vec3 inertia_of(double mass)
+{
+    double xx = SEMI.x * SEMI.x, yy = SEMI.y * SEMI.y, zz = SEMI.z * SEMI.z;
+    return v3(mass * (yy + zz) / 5, mass * (xx + zz) / 5, mass * (xx + yy) / 5);
+}
+
+static dem_vec3 by_inverse(dem_quat q, dem_vec3 inertia, dem_vec3 l)
+{
+    dem_vec3 own = quat_unrotate(q, l);
+    return quat_rotate(q, v3(own.x / inertia.x, own.y / inertia.y, own.z / inertia.z));
+}
+
+// the lowest point of the surface, from the centre
+static dem_vec3 lowest(dem_quat q)
+{
+    dem_vec3 n = quat_unrotate(q, v3(0, 0, -1)), a = v3(SEMI.x * n.x, SEMI.y * n.y, SEMI.z * n.z);
+    double h = v3_norm(a);
+    return quat_rotate(q, v3(SEMI.x * a.x / h, SEMI.y * a.y / h, SEMI.z * a.z / h));
+}
+
+// with steps so short that their order does not matter
+static flight perfect(flight f, double mass, double step, int steps)
+{
+    dem_vec3 inertia = inertia_of(mass), l, spring = v3(0, 0, 0);
+    dem_vec3 own = quat_unrotate(f.q, f.spin);
+    l = quat_rotate(f.q, v3(own.x * inertia.x, own.y * inertia.y, own.z * inertia.z));
+    double zeta = dem_damping_ratio_cut(RESTITUTION), kt = 2.0 / 7 * STIFFNESS;
+    for (int i = 0; i < steps; i++) {
+        dem_vec3 r = lowest(f.q), force = v3(0, 0, 0), n = v3(0, 0, 1);
+        double depth = -(f.x.z + r.z);
+        if (depth > 0) {
+            dem_vec3 v = v3_add(f.v, v3_cross(f.spin, r)), arm = v3_cross(r, n);
+            double m = 1 / (1 / mass + v3_dot(arm, by_inverse(f.q, inertia, arm)));
+            double normal = fmax(0, STIFFNESS * depth - 2 * zeta * sqrt(STIFFNESS * m) * v.z);
+            dem_vec3 slip = v3(-v.x, -v.y, 0);
+            spring = v3_add(spring, v3_scale(v3_cross(n, spring), 0.5 * step * f.spin.z));
+            spring = v3_along(spring, step, slip);
+            dem_vec3 drag = v3_along(v3_scale(spring, kt), 2 * zeta * sqrt(kt * m), slip);
+            double size = v3_norm(drag), held = kt * v3_norm(spring);
+            if (size > MU * normal)
+                drag = v3_scale(drag, MU * normal / size);
+            if (held > MU * normal)
+                spring = v3_scale(drag, 1 / kt);
+            force = v3_add(v3(0, 0, normal), drag);
+        } else
+            spring = v3(0, 0, 0);
+        f.v = v3_along(f.v, step / mass, force);
+        l = v3_along(l, step, v3_cross(r, force));
+        f.x = v3_along(f.x, step, f.v);
+        f.spin = by_inverse(f.q, inertia, l);
+        f.q = quat_unit(quat_multiply(quat_about(v3_scale(f.spin, step)), f.q));
+        f.spin = by_inverse(f.q, inertia, l);
+    }
+    return f;
+}
+
+static void oblique(const bench *b)
+{
+    model *m = new_model(b, 1, true);
+    m->laws[0].damping = DEM_DAMPING_RESTITUTION;
+    m->laws[0].restitution = RESTITUTION;
+    m->laws[0].friction = DEM_FRICTION_LINEAR;
+    m->laws[0].friction_coefficient = MU;
+    double mass = 2500 * 4 * DEM_PI / 3 * SEMI.x * SEMI.y * SEMI.z, t = DEM_PI * sqrt(mass / STIFFNESS);
+    m->scene.time.step = t / 500;
+    m->materials[0].density = 2500;
+    dem_world *w = model_world(m, 1);
+    dem_random r = random_stream(1, 4);
+    double error = 0, speed = OVERLAP * sqrt(STIFFNESS / mass) * sqrt(2);
+    for (int i = 0; i < ORIENTATIONS; i++) {
+        flight start = {.q = random_quat(&r), .v = v3(speed * sqrt(0.5), 0, -speed * sqrt(0.5))};
+        start.x = v3(0, 0, -lowest(start.q).z + 0.2 * OVERLAP);
+        flight want = perfect(start, mass, t / 5000, 20000);
+        soft_place(w, 0, start.x, start.q);
+        soft_placed(w);
+        soft_throw(w, 0, start.v);
+        run_steps(w, 2000);
+        measured(w);
+        dem_body_view v = dem_world_bodies(w);
+        error += (v3_distance(v.velocity[0], want.v) + 0.5 * v3_distance(v.spin[0], want.spin)) / speed / ORIENTATIONS;
+    }
+    printf("%6zu  rebound error %6.4f\n", b->spheres, error);
+    dem_world_destroy(w);
+    model_free(m);
+}
+
+// ---- paths
+
+static void paths(const bench *b)
+{
+    enum { STEPS = 2000, PATHS = 6 };
+    model *m = new_model(b, 2, false);
+    dem_world *w = model_world(m, 1);
+    dem_random r = random_stream(1, 5);
+    double work = 0, jump = 0;
+    for (int path = 0; path < PATHS; path++) {
+        dem_quat q[2] = {random_quat(&r), random_quat(&r)}, last_q = q[1];
+        dem_vec3 normal, zero = v3(0, 0, 0), last_x = zero, last_f = zero, last_t = zero;
+        double x = soft_twin_place(w, q[0], q[1], OVERLAP, &normal), sum = 0, stored = 0, force = 0, most = 0;
+        dem_vec3 across = v3_normal_to(normal);
+        for (int i = 0; i <= STEPS; i++) {
+            double a = 2 * DEM_PI * i / STEPS;
+            dem_vec3 at = v3_along(v3(x, 0, 0), 0.4 * OVERLAP * (1 - cos(a)), normal);
+            at = v3_along(at, 2 * OVERLAP * sin(a), across);
+            dem_quat turn =
+                quat_multiply(quat_about(v3(0.02 * sin(a), 0.015 * (1 - cos(a)), -0.02 * sin(2 * a))), q[1]);
+            soft_place(w, 1, at, turn);
+            soft_placed(w);
+            dem_vec3 f = dem_world_bodies(w).force[1], t = dem_world_bodies(w).moment[1];
+            if (i > 0) {
+                dem_quat d = quat_multiply(turn, quat_conjugate(last_q));
+                dem_vec3 by = v3_scale(v3(d.x, d.y, d.z), d.w < 0 ? -2 : 2);
+                sum += 0.5 * (v3_dot(v3_add(f, last_f), v3_sub(at, last_x)) + v3_dot(v3_add(t, last_t), by));
+                most = fmax(most, v3_distance(f, last_f));
+            }
+            stored = fmax(stored, dem_world_figures(w)->energy.elastic);
+            force = fmax(force, v3_norm(f));
+            last_x = at;
+            last_q = turn;
+            last_f = f;
+            last_t = t;
+        }
+        work = fmax(work, fabs(sum) / stored);
+        jump = fmax(jump, most / force);
+    }
+    printf("%6zu  work / stored %8.1e  largest jump / largest force %7.4f\n", b->spheres, work, jump);
+    dem_world_destroy(w);
+    model_free(m);
+}
+
+// ---- cost: a bed of grains under gravity, microseconds for a body and step in the pass of contacts
+
+static void cost(const bench *b)
+{
+    enum { SIDE = 6, COUNT = SIDE * SIDE * SIDE };
+    model *m = new_model(b, 0, true);
+    double scale;
+    m->scene.shape_count = 0;
+    uint32_t shape = model_of_clump(m, b->clump, &scale);
+    m->laws[0].damping = DEM_DAMPING_RESTITUTION;
+    m->laws[0].restitution = 0.3;
+    m->laws[0].friction = DEM_FRICTION_LINEAR;
+    m->laws[0].friction_coefficient = 0.3;
+    m->laws[0].stiffness = 1e7;
+    model_lattice(m, COUNT, 1.05, 0.2, 1);
+    for (size_t i = 0; i < COUNT; i++) {
+        m->bodies[i].shape = shape;
+        m->bodies[i].scale = scale;
+    }
+    for (int k = 0; k < 2; k++) {
+        dem_vec3 n = v3(k == 0, k == 1, 0);
+        model_plane(m, v3(0, 0, 0), n);
+        model_plane(m, v3_scale(n, 1.05 * SIDE), v3_scale(n, -1));
+    }
+    m->scene.gravity = v3(0, 0, -9.81);
+    m->scene.time.step = 2e-4;
+    dem_world *w = model_world(m, 1);
+    run_steps(w, 8000);
+    size_t count, contacts = measured(w)->contacts;
+    double best[2] = {INFINITY, INFINITY};
+    for (int i = 0; i < 5; i++) {
+        dem_world_reset_clocks(w);
+        run_steps(w, 200);
+        const dem_pass_time *t = dem_world_passes(w, &count);
+        best[0] = fmin(best[0], t[DEM_PASS_PAIRS].seconds);
+        best[1] = fmin(best[1], t[DEM_PASS_REFRESH].seconds + t[DEM_PASS_LISTS].seconds);
+    }
+    size_t listed = 0;
+    for (size_t i = 0; i < w->segment_count; i++)
+        listed += w->contacts.segments[i].end - w->contacts.segments[i].begin;
+    printf("%6zu  pairs %7.3f us a body and step, lists %7.3f us; %5.2f contacts and %6.1f listed pairs a body\n",
+           b->spheres, 1e6 * best[0] / 200 / COUNT, 1e6 * best[1] / 200 / COUNT, (double)contacts / COUNT,
+           (double)listed / COUNT);
+    dem_world_destroy(w);
+    model_free(m);
+}
+
 int main(int argc, char **argv)
 {
     static const char *const modes[] = {"sum", "mean", "merge", "soft"};
     static const struct {
         const char *name;
         void (*run)(const bench *);
-    } cases[] = {{"wall", wall}, {"twin", twin}, {"bounce", bounce}};
+    } cases[] = {{"wall", wall},       {"twin", twin},   {"bounce", bounce},
+                 {"oblique", oblique}, {"paths", paths}, {"cost", cost}};
     if (argc < 5)
         return fprintf(stderr, "Usage: bench_soft CASE MODE TAU CLUMP...\n"), 2;
     bench b = {.tau = atof(argv[3])};
