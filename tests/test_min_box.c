@@ -90,6 +90,23 @@ static void scale_and_place_do_not_matter(void **state)
     }
 }
 
+static void the_box_is_the_same_for_any_number_of_threads(void **state)
+{
+    (void)state;
+    dem_mesh grain = shape_grain(12);
+    double first[3];
+    dem_vec3 first_axes[3];
+    dem_error error;
+    check_ok(dem_mesh_min_box(&grain, 1, first, first_axes, &error), error);
+    for (int threads = 2; threads <= 4; threads++) {
+        double edges[3];
+        dem_vec3 axes[3];
+        check_ok(dem_mesh_min_box(&grain, threads, edges, axes, &error), error);
+        check(memcmp(edges, first, sizeof edges) == 0 && memcmp(axes, first_axes, sizeof axes) == 0);
+    }
+    dem_mesh_free(&grain);
+}
+
 static void a_line_has_no_box(void **state)
 {
     (void)state;
@@ -107,6 +124,7 @@ int main(void)
         cmocka_unit_test(a_regular_tetrahedron_fits_into_a_cube),
         cmocka_unit_test(an_ellipsoid_has_its_three_axes),
         cmocka_unit_test(scale_and_place_do_not_matter),
+        cmocka_unit_test(the_box_is_the_same_for_any_number_of_threads),
         cmocka_unit_test(a_line_has_no_box),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
