@@ -100,6 +100,9 @@ static void a_line_across_a_periodic_side_is_where_its_images_are(void **state)
     for (int i = 0; i < 2; i++)
         in += (i ? -1 : 1) * DEM_PI * h[i] * h[i] * (3 * R - h[i]) / 3;
     check_near(v[0].solid_volume, in, 5e-3 * 4 * DEM_PI / 3 * R * R * R);
+    // at the other end that part, and a cap of the second ball
+    double caps = DEM_PI * 0.006 * 0.006 * (3 * R - 0.006) / 3 + DEM_PI * 0.0045 * 0.0045 * (3 * R - 0.0045) / 3;
+    check_near(v[1].solid_volume, caps, 1e-2 * 4 * DEM_PI / 3 * R * R * R);
     dem_world_destroy(w);
     model_free(m);
 }

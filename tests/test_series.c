@@ -27,7 +27,7 @@ static dem_figures figures_at(int i)
                          .overlap_ratio = 1e-3 * random_uniform(&r),
                          .centre = random_vector(&r),
                          .highest = 1.0 / 3,
-                         .energy = {random_uniform(&r), 1, -2, 3, 4, 5, 6, 7, 8, 9, NAN}};
+                         .energy = {random_uniform(&r), 1, -2, 3, 4, 5, 6, 7, 8, 9, 10, NAN}};
 }
 
 static dem_status write_row(dem_series *series, int i, dem_error *error)
