@@ -370,7 +370,7 @@ static void wrong_walls_are_refused(void **state)
 #define PLANE "'plane': {'point': [0, 0, 0], 'normal': [0, 0, 1]}"
     static const refusal cases[] = {
         {IN_HEAD("'walls': {'w': {" PLANE "}}"), 7, "walls.w: 'material' is missing (column 16); add it"},
-        {WALL("'motion': {}"), 7, "~needs one of 'plane', 'box', 'cylinder' and 'mesh'"},
+        {WALL("'motion': {}"), 7, "~needs one of 'plane', 'box', 'cylinder', 'cone', 'sphere' and 'mesh'"},
         {WALL(PLANE ", 'box': {'min': [0, 0, 0], 'max': [1, 1, 1]}"), 7, "~has more than one of"},
         {WALL(PLANE ", 'unit': 'mm'"), 7, "~'unit' is the unit of a mesh file"},
         {WALL("'mesh': 'x.stl', 'unit': 'kg'"), 7, "~files are not read here"},
@@ -380,8 +380,18 @@ static void wrong_walls_are_refused(void **state)
         {WALL("'cylinder': {'point': [0, 0, 0], 'axis': [0, 0, 1], 'radius': -1}"), 7, "~must be above 0"},
         {WALL("'cylinder': {'point': [0, 0, 0], 'axis': [0, 0, 1], 'radius': 1, 'side': 'in'}"), 7,
          "~use one of: inside, outside"},
-        {WALL("'cone': {}"), 7, "~this is not built yet"},
-        {WALL("'sphere': {}"), 7, "~is not built yet"},
+        {WALL("'cone': {}"), 7, "~'axis' is missing"},
+        {WALL("'cone': {'axis': [0, 0, 1], 'apex': [0, 0, 0]}"), 7, "~needs 'apex' and 'angle', or"},
+        {WALL("'cone': {'axis': [0, 0, 1], 'apex': [0, 0, 0], 'angle': 1, 'length': 1}"), 7, "~give exactly these"},
+        {WALL("'cone': {'axis': [0, 0, 1], 'apex': [0, 0, 0], 'angle': '90 deg'}"), 7, "~must be above 0"},
+        {WALL("'cone': {'axis': [0, 0, 1], 'point': [0, 0, 0], 'radii': [1, 1], 'length': 0}"), 7, "~has no surface"},
+        {WALL("'cone': {'axis': [0, 0, 1], 'point': [0, 0, 0], 'radii': [1, 2], 'length': 1, 'side': 'inside'}"), 7,
+         "~solid on both sides"},
+        {WALL("'sphere': {}"), 7, "~'centre' is missing"},
+        {WALL("'plane': {'point': [0, 0, 0], 'normal': [0, 0, 1], 'size': [1, 2], 'radius': 1}"), 7, "~has both"},
+        {WALL("'plane': {'point': [0, 0, 0], 'normal': [0, 0, 1], 'along': [1, 0, 0]}"), 7, "~first side"},
+        {WALL("'plane': {'point': [0, 0, 0], 'normal': [0, 0, 1], 'size': [1, 2], 'along': [0, 0, 1]}"), 7,
+         "~direction of the normal"},
         {WALL(PLANE ", 'servo': {}"), 7, "~'max_velocity' is missing"},
         {WALL(PLANE ", 'wear': {}"), 7, "~is not built yet"},
         {WALL(PLANE ", 'motion': {'oscillate': {}}"), 7, "~'frequency' is missing"},
@@ -396,6 +406,27 @@ static void wrong_walls_are_refused(void **state)
     CHECK_REFUSALS(cases);
 }
 
+static void wrong_bonds_are_refused(void **state)
+{
+    (void)state;
+#define BOND(members) IN_HEAD("'bonds': {'b': {'young': 1e9, " members "}}")
+    static const refusal cases[] = {
+        {S "'bonds': 5}", 2, "~needs an object of bonds by name"},
+        {S "'bonds': {'a': {}}}", 2, "~'young' is missing"},
+        {BOND("'between': 'some'"), 7, "~write 'all'"},
+        {BOND("'between': ['rock']"), 7, "~needs a list of 2"},
+        {BOND("'between': ['rock', 'balll']"), 7, "~unknown group or shape 'rock'"},
+        {BOND("'tensile_strength': -1"), 7, "~must be above 0"},
+        {BOND("'moment_contribution': 2"), 7, "~must be at least 0 and at most 1"},
+        {BOND("'damping': -0.1"), 7, "~must be at least 0"},
+        {BOND("'contact': 'beside'"), 7, "~unknown contact 'beside'"},
+        {BOND("'gap': '1 MPa'"), 7, "~gap"},
+        {BOND("'radius_multiplier': 0"), 7, "~must be above 0"},
+        {BOND("'strength': 1"), 7, "~unknown key 'strength'"},
+    };
+    CHECK_REFUSALS(cases);
+}
+
 static void what_is_not_built_is_never_ignored(void **state)
 {
     (void)state;
@@ -404,8 +435,6 @@ static void what_is_not_built_is_never_ignored(void **state)
          "domain.leaving: 'delete' is not built yet (column 23); leave it out"},
         {S "'inlets': {'a': {}}}", 2, "~this is not built yet"},
         {S "'inlets': [1]}", 2, "~is not built yet"},
-        {S "'bonds': {'a': {}}}", 2, "~is not built yet"},
-        {S "'bonds': 5}", 2, "~is not built yet"},
         {S "'damping': {'drag': {}}}", 2, "~'density' is missing"},
         {S "'damping': {'drag': {'density': 1, 'viscosity': -1}}}", 2, "~must be at least 0"},
         {S "'damping': {'drag': {'density': 1, 'viscosity': '1 Pa'}}}", 2, "~viscosity"},
@@ -450,6 +479,7 @@ int main(void)
         cmocka_unit_test(wrong_shapes_are_refused),
         cmocka_unit_test(wrong_bodies_are_refused),
         cmocka_unit_test(wrong_walls_are_refused),
+        cmocka_unit_test(wrong_bonds_are_refused),
         cmocka_unit_test(what_is_not_built_is_never_ignored),
         cmocka_unit_test(text_that_is_no_json_is_refused_by_its_line),
     };

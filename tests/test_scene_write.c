@@ -237,8 +237,8 @@ static void a_scene_made_by_hand_is_written_too(void **state)
     const dem_shape_def shape = {.name = "s", .clump = clump};
     dem_pair_law law = dem_pair_law_defaults();
     law.stiffness = 5;
-    const dem_body_def bodies[] = {{0, 1, {1, 2, 3}, {1, 0, 0, 0}, {0, 0, 0}, {0, 0, 0}, 0},
-                                   {0, 2, {4, 5, 6}, {1, 0, 0, 0}, {0, 0, 0}, {0, 0, 0}, DEM_LOCK_Z}};
+    const dem_body_def bodies[] = {{0, 1, {1, 2, 3}, {1, 0, 0, 0}, {0, 0, 0}, {0, 0, 0}, 0, NULL},
+                                   {0, 2, {4, 5, 6}, {1, 0, 0, 0}, {0, 0, 0}, {0, 0, 0}, DEM_LOCK_Z, NULL}};
     dem_wall_def wall = {.name = "w", .normal = {0, 0, 1}, .spin = {0, 0, 2}};
     dem_scene scene = dem_scene_defaults(), back;
     scene.materials = &material, scene.material_count = 1;

@@ -5,6 +5,7 @@
 #include "base/status.h"
 #include "base/text.h"
 #include "sim/bodies.h"
+#include "sim/bonds.h"
 #include "sim/contacts.h"
 #include "sim/schemes.h"
 #include "sim/timestep.h"
@@ -88,6 +89,31 @@ static void put_held(dem_buffer *out, const dem_world *w)
     dem_buffer_text(out, "\n");
 }
 
+// of triangles; the rest of the form is smooth
+static size_t count_meshes(const dem_world *w)
+{
+    size_t count = 0;
+    for (size_t i = 0; i < w->walls.count; i++)
+        count += w->walls.items[i].mesh != NULL;
+    return count;
+}
+
+static void put_walls(dem_buffer *out, const dem_world *w)
+{
+    size_t meshes = count_meshes(w), smooth = count_walls(w, DEM_FORM_MESH) - meshes, servos = 0;
+    for (size_t i = 0; i < w->walls.count; i++)
+        servos += w->walls.items[i].servo.on;
+    if (meshes)
+        dem_buffer_text(out, "  mesh contacts: exact closest points on the listed triangles\n");
+    if (smooth)
+        dem_buffer_print(out, "  contacts of %zu cones, spheres, discs and rectangles: exact closest points\n", smooth);
+    if (w->walls.count)
+        dem_buffer_print(out, "  walls: %zu planes, %zu cylinders, %zu meshes\n", count_walls(w, DEM_FORM_PLANE),
+                         count_walls(w, DEM_FORM_CYLINDER), meshes);
+    if (servos)
+        dem_buffer_print(out, "  %zu servo walls: sums of their contacts, then a velocity\n", servos);
+}
+
 static void put_motion(dem_buffer *out, const dem_world *w, size_t isotropic)
 {
     const dem_scheme *t = &dem_translations[w->integrator.translation], *r = &dem_rotations[w->integrator.rotation];
@@ -111,26 +137,43 @@ static void put_motion(dem_buffer *out, const dem_world *w, size_t isotropic)
         put_held(out, w);
 }
 
+static void put_bonds(dem_buffer *out, const dem_world *w)
+{
+    const dem_bonds *b = w->bonds;
+    for (size_t d = 0; d < b->def_count; d++) {
+        size_t count = 0;
+        for (size_t i = 0; i < b->count; i++)
+            count += b->items[i].def == d;
+        dem_buffer_print(out, "  bonds \"%s\": %zu, ", b->defs[d].name, count);
+        if (!b->made[d])
+            dem_buffer_print(out, "made at %g s, ", b->defs[d].at);
+        bool breaks = isfinite(b->defs[d].tensile_strength) || isfinite(b->defs[d].shear_strength);
+        dem_buffer_print(out, "%s, %s\n",
+                         b->defs[d].contact == DEM_BOND_INSTEAD ? "instead of the contact of their spheres"
+                                                                : "beside the contact of their spheres",
+                         breaks ? "breakable" : "unbreakable");
+    }
+    dem_buffer_print(out, "    %zu B a bond, a force and three moments each, added up by body\n", sizeof *b->items);
+}
+
 static void put_passes(dem_buffer *out, const dem_world *w)
 {
-    size_t isotropic = 0, meshes = count_walls(w, DEM_FORM_MESH);
+    size_t isotropic = 0, meshes = count_meshes(w);
     for (size_t row = 0; row < w->bodies.count; row++)
         isotropic += w->bodies.inertia[DEM_ROW * row + 7] > 0;
     dem_buffer_text(out, "passes of a step:\n");
     if (w->walls.move)
         dem_buffer_text(out, "  walls move to their place\n");
-    if (meshes)
-        dem_buffer_text(out, "  mesh contacts: exact closest points on the listed triangles\n");
     if (w->features.weighted)
         dem_buffer_text(out, "  weights of contacts that stand for the same pair\n");
     if (w->features.soft)
         dem_buffer_text(out, "  walls and pairs are soft: sums over the spheres of each pair, then one law for all of them\n");
-    if (w->walls.count)
-        dem_buffer_print(out, "  walls: %zu planes, %zu cylinders, %zu meshes\n", count_walls(w, DEM_FORM_PLANE),
-                         count_walls(w, DEM_FORM_CYLINDER), meshes);
+    put_walls(out, w);
     dem_buffer_text(out, "  contacts of pairs\n");
     if (w->segment_count * DEM_SEGMENT > w->domain_bodies)
         dem_buffer_print(out, "  momenta across domains of %zu bodies\n", w->domain_bodies);
+    if (w->bonds)
+        put_bonds(out, w);
     put_motion(out, w, isotropic);
     if (w->damping.local > 0 || w->damping.viscous > 0)
         dem_buffer_text(out, "  with damping of the motion\n");
@@ -215,5 +258,7 @@ double dem_world_bytes_per_body(const dem_world *w)
         if (w->wall_contacts[form].segments)
             bytes += (double)w->wall_contacts[form].capacity * (double)dem_contact_bytes(&w->features, form);
     bytes += (double)w->segment_count * (sizeof(dem_segment) * 2 + sizeof(dem_tally) * (1 + DEM_WALL_FORMS));
+    if (w->bonds)
+        bytes += dem_bonds_bytes(w->bonds);
     return n ? bytes / (double)n : 0;
 }

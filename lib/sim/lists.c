@@ -105,3 +105,11 @@ dem_status dem_lists_update(dem_world *w, dem_error *error)
     w->clocks[DEM_PASS_LISTS].seconds += t3 - t2;
     return DEM_OK;
 }
+
+dem_status dem_lists_renew(dem_world *w, dem_error *error)
+{
+    for (size_t row = 0; row < w->bodies.count; row++)
+        w->bodies.path_then[row] = -INFINITY;
+    ask_all(w);
+    return dem_lists_update(w, error);
+}

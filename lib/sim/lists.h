@@ -8,4 +8,7 @@
 /// walls and pairs, rebuilds lists. Errors: DEM_FAILED for a body that is not finite, runs away or leaves the domain.
 dem_status dem_lists_update(dem_world *world, dem_error *error);
 
+/// The same for all bodies, with a search for pairs.
+dem_status dem_lists_renew(dem_world *world, dem_error *error);
+
 #endif

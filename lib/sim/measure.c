@@ -5,6 +5,7 @@
 
 #include "base/status.h"
 #include "sim/bodies.h"
+#include "sim/bonds.h"
 #include "sim/fluid.h"
 #include "sim/motion.h"
 
@@ -43,25 +44,49 @@ void dem_views_release(dem_views *v)
 
 // ---- evaluating
 
-static dem_status visit_segments(dem_world *w, dem_contacts *contacts, int form, dem_contact_visit visit, void *user,
-                                 dem_error *error)
+// the records of one segment, in the order of its columns
+static bool evaluate(dem_world *w, const dem_contacts *contacts, size_t segment, int form)
 {
+    const dem_segment *s = &contacts->segments[segment];
     const dem_contact_instance *any = &w->kernels->instances[w->kernels->instance_count - 1];
     dem_rows rows = world_rows(w);
     dem_tally scratch = {0};
+    while (w->views.record_capacity < s->end - s->begin)
+        if (!dem_grow(&w->views.records, &w->views.record_capacity, w->views.record_capacity, sizeof *w->views.records))
+            return false;
+    dem_contact_job job = {contacts->columns, s->begin, s->end,          w->last_step, 0,
+                           w->next_step,      &scratch, w->views.records};
+    if (w->features.soft)
+        dem_soft_records(w, segment, form, w->views.records);
+    else
+        (form < 0 ? any->pairs : any->walls[form])(w->features, &rows, &job);
+    return true;
+}
+
+double dem_contact_elastic(dem_world *w, uint32_t a, uint32_t b, uint32_t sphere_a, uint32_t sphere_b)
+{
+    const dem_segment *s = &w->contacts.segments[a / DEM_SEGMENT];
+    const dem_contact_columns *c = &w->contacts.columns;
+    double sum = 0;
+    if (!evaluate(w, &w->contacts, a / DEM_SEGMENT, -1))
+        return sum;
+    for (size_t at = s->begin; at < s->end; at++) {
+        const dem_contact_record *r = &w->views.records[at - s->begin];
+        bool same = c->a[at] == a && c->b[at] == b && c->sphere_a[at] == sphere_a && c->sphere_b[at] == sphere_b;
+        if (same && r->touches)
+            sum += r->elastic_normal + r->elastic_slide + r->elastic_turn;
+    }
+    return sum;
+}
+
+static dem_status visit_segments(dem_world *w, dem_contacts *contacts, int form, dem_contact_visit visit, void *user,
+                                 dem_error *error)
+{
     for (size_t i = 0; i < w->segment_count; i++) {
         const dem_segment *s = &contacts->segments[i];
         size_t size = s->end - s->begin;
-        while (w->views.record_capacity < size)
-            if (!dem_grow(&w->views.records, &w->views.record_capacity, w->views.record_capacity,
-                          sizeof *w->views.records))
-                return dem_fail_memory(error);
-        dem_contact_job job = {contacts->columns, s->begin, s->end,          w->last_step, 0,
-                               w->next_step,      &scratch, w->views.records};
-        if (w->features.soft)
-            dem_soft_records(w, i, form, w->views.records);
-        else
-            (form < 0 ? any->pairs : any->walls[form])(w->features, &rows, &job);
+        if (!evaluate(w, contacts, i, form))
+            return dem_fail_memory(error);
         for (size_t k = 0; k < size; k++) {
             size_t at = segment_place(s, k);
             dem_contact_item item = dem_contact_get(&contacts->columns, at);
@@ -368,6 +393,8 @@ dem_energy dem_ledger(const dem_world *w)
         e.friction += lanes(w->motion_tallies[i].rolling);
         e.work += lanes(w->motion_tallies[i].work);
     }
+    if (w->bonds)
+        dem_bonds_ledger(w->bonds, &e.viscous, &e.broken);
     return e;
 }
 
@@ -425,11 +452,15 @@ dem_status dem_world_measure(dem_world *w, dem_error *error)
     DEM_TRY(dem_visit_contacts(w, visit_contact, &t, error));
     if (t.failed)
         return dem_fail_memory(error);
+    if (w->bonds)
+        DEM_TRY(dem_bonds_measure(w, error));
     gather(w);
     balance(w);
     if (w->regions) {
-        dem_body_view bodies = dem_world_bodies(w);
-        dem_regions_measure(w->regions, &bodies, v->contacts, v->contact_count);
+        dem_region_views views = {dem_world_bodies(w), v->contacts, v->contact_count, NULL, 0};
+        if (w->bonds)
+            views.bonds = dem_world_bonds(w, &views.bond_count);
+        dem_regions_measure(w->regions, &views);
     }
     v->figures.largest_overlap_ratio = fmax(largest_overlap(w), v->figures.overlap_ratio);
     w->clocks[DEM_PASS_MEASURE].seconds += dem_clock() - begin;

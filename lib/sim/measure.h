@@ -14,6 +14,9 @@ typedef void (*dem_contact_visit)(void *user, dem_world *world, int form, const 
 /// Evaluates all listed contacts of pairs and walls in the order of the lists, changing nothing.
 dem_status dem_visit_contacts(dem_world *world, dem_contact_visit visit, void *user, dem_error *error);
 
+/// Elastic energy of the contact of two spheres as it is listed now [J].
+double dem_contact_elastic(dem_world *world, uint32_t a, uint32_t b, uint32_t sphere_a, uint32_t sphere_b);
+
 /// Energy dissipated and done by the time of the last measuring: the tallies, and what they will get for the time
 /// since.
 dem_energy dem_ledger(const dem_world *world);

@@ -4,6 +4,7 @@
 #include <string.h>
 
 #include "base/status.h"
+#include "sim/bonds.h"
 #include "sim/broad.h"
 
 enum { PAIRS_TO_SHARE = 256 };  // expired pairs that are worth more than one thread
@@ -151,6 +152,10 @@ static bool look_at_pair(dem_world *w, dem_fresh *fresh)
             fresh->count = 1;
             fresh->slack = margin;
         }
+    }
+    if (w->bonds && w->bonds->instead && fresh->count) {
+        fresh->count = dem_bonds_mask(w, p, c->pairs + 2 * fresh->begin, fresh->count);
+        c->count = fresh->begin + fresh->count;
     }
     fresh->slack -= w->ahead;
     fresh->changed = !same_candidates(w, p, fresh);

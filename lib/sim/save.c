@@ -6,6 +6,7 @@
 #include "base/status.h"
 #include "base/text.h"
 #include "sim/bodies.h"
+#include "sim/bonds.h"
 #include "sim/broad.h"
 #include "sim/contacts.h"
 
@@ -53,6 +54,11 @@ static uint64_t hash_wall(uint64_t h, const dem_wall *wall)
                         {s->mass, s->damping_rate, s->partner},
                         {s->extent[0].length, s->extent[1].length, 0}};
     h = hash_bytes(h, more, sizeof more);
+    const dem_surface *f = &wall->surface;
+    double form[] = {f->kind, f->begin,   f->run[0],  f->run[1],  f->endless,
+                     f->side, f->half[0], f->half[1], f->along.x, f->along.y,
+                     f->along.z};
+    h = hash_bytes(h, form, sizeof form);
     h = hash_bytes(h, m->oscillations, m->oscillation_count * sizeof *m->oscillations);
     h = hash_bytes(h, m->table.time, m->table.count * sizeof *m->table.time);
     h = hash_bytes(h, m->table.shift, m->table.count * sizeof *m->table.shift);
@@ -89,7 +95,19 @@ static uint64_t hash_constants(const dem_world *w)
     h = hash_bytes(h, motion, sizeof motion);
     double numbers[] = {w->time_def.step,      w->multiple,           w->domain.periodic[0],
                         w->domain.periodic[1], w->domain.periodic[2], w->soft.tau};
-    return hash_bytes(h, numbers, sizeof numbers);
+    h = hash_bytes(h, numbers, sizeof numbers);
+    for (size_t i = 0; w->bonds && i < w->bonds->def_count; i++) {
+        const dem_bond_def *d = &w->bonds->defs[i];
+        double of[10] = {d->gap,         d->at,
+                         d->radius_multiplier,
+                         d->young,       d->shear_ratio,
+                         d->tensile_strength,
+                         d->shear_strength,
+                         d->moment_contribution,
+                         d->damping,     d->contact};
+        h = hash_bytes(h, of, sizeof of);
+    }
+    return h;
 }
 
 static block_head head_of(const dem_world *w)
@@ -265,6 +283,15 @@ static void pass_touches(cursor *c, dem_world *w)
     }
 }
 
+static void pass_bonds(cursor *c, dem_world *w)
+{
+    dem_bonds *b = w->bonds;
+    pass(c, b->made, b->def_count * sizeof *b->made);
+    pass(c, &b->due, sizeof b->due);
+    pass_array(c, &b->items, &b->count, sizeof *b->items);
+    b->capacity = b->count;
+}
+
 static void pass_walls(cursor *c, dem_world *w)
 {
     for (size_t i = 0; w->walls.servo && i < w->walls.count; i++) {
@@ -285,6 +312,8 @@ static void pass_state(cursor *c, dem_world *w)
     pass_touches(c, w);
     pass(c, w->tallies, w->segment_count * (1 + DEM_WALL_FORMS) * sizeof *w->tallies);
     pass(c, w->motion_tallies, w->segment_count * sizeof *w->motion_tallies);
+    if (w->bonds)
+        pass_bonds(c, w);
 }
 
 dem_status dem_world_save(const dem_world *world, void **bytes, size_t *size, dem_error *error)
@@ -324,6 +353,12 @@ static bool sound(const dem_world *w)
             p->adjacent_b >= 2 * w->pairs.count)
             return false;
     }
+    for (size_t i = 0; w->bonds && i < w->bonds->count; i++) {
+        const dem_bond *bond = &w->bonds->items[i];
+        if (bond->a >= n || bond->b >= n || bond->def >= w->bonds->def_count ||
+            bond->sphere_a >= w->templates.sphere_count || bond->sphere_b >= w->templates.sphere_count)
+            return false;
+    }
     return true;
 }
 
@@ -349,6 +384,8 @@ dem_status dem_world_restore(dem_world *w, const void *bytes, size_t size, dem_e
     pass_state(&c, w);
     if (c.failed || c.left || !sound(w))
         return refuse(error, "does not fit the scene; resume with the scene it was made from");
+    if (w->bonds && !dem_bonds_list(w))
+        return dem_fail_memory(error);
     dem_walls_place(&w->walls, dem_world_time(w));
     // where momenta of other domains go is made anew
     for (size_t i = 0; i < w->segment_count; i++)
@@ -376,6 +413,12 @@ uint64_t dem_world_hash(const dem_world *w)
                 if (columns[k])
                     hash = hash_bytes(hash, columns[k] + s->begin, (s->end - s->begin) * sizeof(double));
         }
+    }
+    for (size_t i = 0; w->bonds && i < w->bonds->count; i++) {
+        const dem_bond *bond = &w->bonds->items[i];
+        uint32_t who[4] = {bond->a, bond->b, bond->def, bond->state};
+        hash = hash_bytes(hash, who, sizeof who);
+        hash = hash_bytes(hash, bond->drag, sizeof bond->drag);
     }
     return hash;
 }

@@ -40,6 +40,19 @@ dem_pair_law dem_pair_law_defaults(void)
     };
 }
 
+dem_bond_def dem_bond_defaults(void)
+{
+    return (dem_bond_def){
+        .name = "",
+        .radius_multiplier = 1,
+        .young = NAN,
+        .shear_ratio = 0.4,
+        .tensile_strength = INFINITY,
+        .shear_strength = INFINITY,
+        .moment_contribution = 1,
+    };
+}
+
 // ---- what follows from a scene
 
 double dem_shape_diameter(const dem_shape_def *shape)

@@ -42,6 +42,7 @@ typedef struct dem_scene_entry {
     const char *file;     ///< resolved path
     size_t first, count;  ///< of the scene's bodies, or of its fills
     uint32_t hold;        ///< of the bodies of a file
+    const char *group;    ///< of the bodies of a file
 } dem_scene_entry;
 
 /// What a wall's definition does not tell of how it was given.

@@ -41,6 +41,7 @@ enum {
     BODY_FIXED,
     BODY_LOCK,
     BODY_PRESCRIBED,
+    BODY_GROUP,
 };
 
 // ---- what is held
@@ -100,6 +101,7 @@ static const dem_field body_table[] = {
     [BODY_FIXED] = {"fixed", read_fixed, .at = offsetof(entry_text, body.hold)},
     [BODY_LOCK] = {"lock", read_hold, .at = offsetof(entry_text, body.hold), .choices = locks},
     [BODY_PRESCRIBED] = {"prescribed", read_hold, .at = offsetof(entry_text, body.hold), .choices = kept},
+    [BODY_GROUP] = {"group", dem_field_text, .at = offsetof(entry_text, body.group)},
 };
 const dem_fields dem_body_fields = DEM_FIELDS(body_table);
 
@@ -131,7 +133,8 @@ static dem_status check_hold(dem_scene_reader *r, const dem_scene_value *v, bool
     return DEM_OK;
 }
 
-static dem_status add_file(dem_scene_reader *r, const dem_scene_value *v, const char *file, bool fixed, uint32_t hold)
+static dem_status add_file(dem_scene_reader *r, const dem_scene_value *v, const char *file, bool fixed, uint32_t hold,
+                           const char *group)
 {
     struct dem_scene_owner *o = r->owner;
     dem_buffer text;
@@ -142,11 +145,12 @@ static dem_status add_file(dem_scene_reader *r, const dem_scene_value *v, const 
     dem_buffer_release(&text);
     for (size_t i = first; status == DEM_OK && i < o->body_count; i++) {
         o->bodies[i].hold = hold;
+        o->bodies[i].group = group;
         status = check_hold(r, v, fixed, o->bodies[i].velocity, o->bodies[i].spin, hold);
     }
     if (status != DEM_OK)
         return status;
-    return add_entry(r, (dem_scene_entry){DEM_ENTRY_FILE, file, first, o->body_count - first, hold});
+    return add_entry(r, (dem_scene_entry){DEM_ENTRY_FILE, file, first, o->body_count - first, hold, group});
 }
 
 static dem_status add_body(dem_scene_reader *r, const dem_scene_value *v, uint64_t given, entry_text *text)
@@ -164,15 +168,16 @@ static dem_status add_body(dem_scene_reader *r, const dem_scene_value *v, uint64
         return dem_fail_memory(r->error);
     o->bodies[o->body_count] = text->body;
     DEM_TRY(check_hold(r, v, text->fixed, text->body.velocity, text->body.spin, text->body.hold));
-    return add_entry(r, (dem_scene_entry){DEM_ENTRY_BODY, NULL, o->body_count++, 1, 0});
+    return add_entry(r, (dem_scene_entry){DEM_ENTRY_BODY, NULL, o->body_count++, 1, 0, NULL});
 }
 
 static dem_status add_fill(dem_scene_reader *r, const dem_scene_value *v, const entry_text *text)
 {
     dem_fill_def *fill = &r->owner->fills[r->owner->fill_count - 1];
     fill->hold = text->body.hold;
+    fill->group = text->body.group;
     DEM_TRY(check_hold(r, v, text->fixed, fill->velocity, v3(0, 0, 0), fill->hold));
-    return add_entry(r, (dem_scene_entry){DEM_ENTRY_FILL, NULL, r->owner->fill_count - 1, 1, 0});
+    return add_entry(r, (dem_scene_entry){DEM_ENTRY_FILL, NULL, r->owner->fill_count - 1, 1, 0, NULL});
 }
 
 static dem_status read_entry(dem_scene_reader *r, const dem_scene_value *v, const dem_field *field)
@@ -181,17 +186,17 @@ static dem_status read_entry(dem_scene_reader *r, const dem_scene_value *v, cons
     uint64_t given;
     DEM_TRY(dem_fields_read(r, v, field->fields, &text, &given));
     bool file = dem_given(given, BODY_FILE), fill = dem_given(given, BODY_FILL);
-    uint64_t options = 1ull << BODY_FIXED | 1ull << BODY_LOCK | 1ull << BODY_PRESCRIBED, others = given & ~options;
+    uint64_t options = 1ull << BODY_FIXED | 1ull << BODY_LOCK | 1ull << BODY_PRESCRIBED | 1ull << BODY_GROUP, others = given & ~options;
     text.fixed = (text.body.hold & (DEM_HOLD_VELOCITY | DEM_HOLD_SPIN)) && !dem_given(given, BODY_PRESCRIBED);
     if ((file || fill) && (others & (others - 1)))
         return dem_scene_refuse(r, v, "make two entries of it",
-                                "\"%s\" stands alone, or with \"fixed\", \"lock\", \"prescribed\"",
+                                "\"%s\" stands alone, or with \"fixed\", \"lock\", \"prescribed\", \"group\"",
                                 file ? "file" : "fill");
     if (!file && !fill && !dem_given(given, BODY_SHAPE))
         return dem_scene_refuse(r, v, "give one of them", "needs \"shape\", \"file\" or \"fill\"");
     if (fill)
         return add_fill(r, v, &text);
-    return file ? add_file(r, v, text.file, text.fixed, text.body.hold) : add_body(r, v, given, &text);
+    return file ? add_file(r, v, text.file, text.fixed, text.body.hold, text.body.group) : add_body(r, v, given, &text);
 }
 
 dem_status dem_section_bodies(dem_scene_reader *r, const dem_scene_value *v, const dem_field *field, void *into)

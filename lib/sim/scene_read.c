@@ -234,7 +234,7 @@ static const dem_field scene_table[] = {
     {"bodies", dem_section_bodies, .fields = &dem_body_fields},
     {"walls", dem_section_walls, .fields = &dem_wall_fields},
     {.name = "inlets", .read = dem_field_nothing},
-    {.name = "bonds", .read = dem_field_nothing},
+    {"bonds", dem_section_bonds, .fields = &dem_bond_fields},
     {"damping", dem_field_object, .at = offsetof(dem_scene, damping), .fields = &damping_fields},
     {"integrator", dem_field_object, .at = offsetof(dem_scene, integrator), .fields = &integrator_fields},
     {"contacts_between_clumps", dem_field_choice, .at = offsetof(dem_scene, multiple), .choices = multiples},

@@ -260,6 +260,12 @@ static void put_hold(dem_json_writer *w, uint32_t hold)
     }
 }
 
+static void put_group(dem_json_writer *w, const char *group)
+{
+    if (group)
+        dem_json_put_string(w, "group", group);
+}
+
 static void put_body(dem_json_writer *w, const dem_scene *scene, const dem_body_def *body)
 {
     dem_quat q = body->orientation;
@@ -271,6 +277,7 @@ static void put_body(dem_json_writer *w, const dem_scene *scene, const dem_body_
     put_vec(w, "spin", body->spin);
     dem_json_put_number(w, "scale", body->scale);
     put_hold(w, body->hold);
+    put_group(w, body->group);
     dem_json_close(w, '}');
 }
 
@@ -335,6 +342,7 @@ static void put_fill(dem_json_writer *w, const dem_scene *scene, const dem_fill_
     put_vec(w, "velocity", fill->velocity);
     dem_json_close(w, '}');
     put_hold(w, fill->hold);
+    put_group(w, fill->group);
     dem_json_close(w, '}');
 }
 
@@ -344,6 +352,7 @@ static void put_entry(dem_json_writer *w, const dem_scene *scene, const dem_scen
         dem_json_open_object(w, NULL);
         dem_json_put_string(w, "file", entry->file);
         put_hold(w, entry->hold);
+        put_group(w, entry->group);
         dem_json_close(w, '}');
         return;
     }
@@ -361,8 +370,8 @@ static void put_bodies(dem_json_writer *w, const dem_scene *scene)
     const dem_bodies_def *b = &scene->bodies;
     bool as_read = o && o->bodies == b->bodies && o->body_count == b->count && o->fills == b->fills &&
                    o->fill_count == b->fill_count;
-    const dem_scene_entry plain[] = {{DEM_ENTRY_BODY, NULL, 0, b->count, 0},
-                                     {DEM_ENTRY_FILL, NULL, 0, b->fill_count, 0}};
+    const dem_scene_entry plain[] = {{DEM_ENTRY_BODY, NULL, 0, b->count, 0, NULL},
+                                     {DEM_ENTRY_FILL, NULL, 0, b->fill_count, 0, NULL}};
     const dem_scene_entry *entries = as_read ? o->entries : plain;
     dem_json_open_array(w, "bodies", true);
     for (size_t i = 0; i < (as_read ? o->entry_count : 2); i++)
@@ -491,14 +500,29 @@ static void put_form(dem_json_writer *w, const dem_wall_def *wall, const dem_wal
         dem_json_put_string(w, "unit", source->unit ? source->unit : "m");
         return;
     }
-    bool plane = wall->kind == DEM_WALL_PLANE;
-    dem_json_open_object(w, plane ? "plane" : "cylinder");
-    put_vec(w, "point", wall->point);
-    put_vec(w, plane ? "normal" : "axis", wall->normal);
-    if (!plane) {
+    static const char *const keys[] = {
+        [DEM_WALL_PLANE] = "plane", [DEM_WALL_DISC] = "plane",   [DEM_WALL_RECTANGLE] = "plane",
+        [DEM_WALL_CONE] = "cone",   [DEM_WALL_SPHERE] = "sphere", [DEM_WALL_CYLINDER] = "cylinder"};
+    bool plane = strcmp(keys[wall->kind], "plane") == 0, sphere = wall->kind == DEM_WALL_SPHERE;
+    bool cone = wall->kind == DEM_WALL_CONE, endless = cone && isinf(wall->length);
+    dem_json_open_object(w, keys[wall->kind]);
+    put_vec(w, sphere ? "centre" : endless ? "apex" : "point", wall->point);
+    if (!sphere)
+        put_vec(w, plane ? "normal" : "axis", wall->normal);
+    if (wall->kind == DEM_WALL_DISC || sphere || wall->kind == DEM_WALL_CYLINDER)
         dem_json_put_number(w, "radius", wall->radius);
-        dem_json_put_string(w, "side", wall->outside ? "outside" : "inside");
+    if (wall->kind == DEM_WALL_RECTANGLE) {
+        dem_json_put_numbers(w, "size", wall->size, 2);
+        put_vec(w, "along", wall->along);
     }
+    if (endless)
+        dem_json_put_number(w, "angle", wall->angle);
+    else if (cone) {
+        dem_json_put_numbers(w, "radii", (double[]){wall->radius, wall->end_radius}, 2);
+        dem_json_put_number(w, "length", wall->length);
+    }
+    if (sphere || endless || wall->kind == DEM_WALL_CYLINDER)
+        dem_json_put_string(w, "side", wall->outside ? "outside" : "inside");
     dem_json_close(w, '}');
 }
 
@@ -546,6 +570,39 @@ static void put_damping(dem_json_writer *w, const dem_damping_def *damping)
         dem_json_put_number(w, "viscosity", drag->viscosity);
         put_vec(w, "velocity", drag->velocity);
         dem_json_put_bool(w, "buoyancy", drag->buoyancy);
+        dem_json_close(w, '}');
+    }
+    dem_json_close(w, '}');
+}
+
+// a scene without bonds does not name them
+static void put_bonds(dem_json_writer *w, const dem_scene *scene)
+{
+    if (!scene->bond_count)
+        return;
+    open_map(w, "bonds");
+    for (size_t i = 0; i < scene->bond_count; i++) {
+        const dem_bond_def *b = &scene->bonds[i];
+        dem_json_open_object(w, text_of(b->name));
+        if (b->between[0] && b->between[1]) {
+            dem_json_open_array(w, "between", false);
+            for (int k = 0; k < 2; k++)
+                dem_json_put_string(w, NULL, b->between[k]);
+            dem_json_close(w, ']');
+        } else
+            dem_json_put_string(w, "between", "all");
+        dem_json_put_number(w, "gap", b->gap);
+        dem_json_put_number(w, "at", b->at);
+        dem_json_put_number(w, "radius_multiplier", b->radius_multiplier);
+        dem_json_put_number(w, "young", b->young);
+        dem_json_put_number(w, "shear_ratio", b->shear_ratio);
+        if (isfinite(b->tensile_strength))
+            dem_json_put_number(w, "tensile_strength", b->tensile_strength);
+        if (isfinite(b->shear_strength))
+            dem_json_put_number(w, "shear_strength", b->shear_strength);
+        dem_json_put_number(w, "moment_contribution", b->moment_contribution);
+        dem_json_put_number(w, "damping", b->damping);
+        dem_json_put_string(w, "contact", b->contact == DEM_BOND_INSTEAD ? "instead" : "parallel");
         dem_json_close(w, '}');
     }
     dem_json_close(w, '}');
@@ -610,6 +667,7 @@ static dem_status put_scene(dem_json_writer *w, const dem_scene *scene, dem_erro
     put_shapes(w, scene);
     put_bodies(w, scene);
     DEM_TRY(put_walls(w, scene, error));
+    put_bonds(w, scene);
     put_damping(w, &scene->damping);
     dem_json_open_object(w, "integrator");
     dem_json_put_string(w, "translation", dem_translations[scene->integrator.translation].name);

@@ -123,6 +123,7 @@ typedef enum dem_pass {
     DEM_PASS_LISTS,
     DEM_PASS_STEP,
     DEM_PASS_MEASURE,
+    DEM_PASS_BONDS,  ///< last, for only some scenes have it
     DEM_PASSES
 } dem_pass;
 
@@ -150,6 +151,7 @@ typedef struct dem_views {
 } dem_views;
 
 typedef struct dem_search dem_search;
+typedef struct dem_bonds dem_bonds;
 
 typedef struct dem_push {
     size_t row;
@@ -189,6 +191,7 @@ struct dem_world {
     dem_contacts contacts, wall_contacts[DEM_WALL_FORMS];
     dem_mesh_touches *mesh_touches;  ///< [segments]
     dem_walls walls;
+    dem_bonds *bonds;  ///< NULL: none
     size_t segment_count;
     uint64_t steps, epoch_steps;              ///< the time is epoch_time + (steps - epoch_steps) next_step
     double epoch_time, last_step, next_step;  ///< last_step: 0 at the start, where the momenta are of the poses' time

@@ -3,6 +3,7 @@
 #include <string.h>
 
 #include "base/status.h"
+#include "sim/bonds.h"
 #include "sim/scene.h"
 #include "sim/touch.h"
 
@@ -196,6 +197,24 @@ static void add_walls(const dem_world *w, size_t row, bool listed, body_problem 
     }
 }
 
+// a bond holds in any direction, and its moments besides
+static void add_bonds(const dem_world *w, size_t row, body_problem *p)
+{
+    const dem_bonds *b = w->bonds;
+    for (size_t i = b->adjacency_first[row]; i < b->adjacency_first[row + 1]; i++) {
+        const dem_bond *bond = &b->items[b->live[b->adjacency[i] >> 1]];
+        bool second = b->adjacency[i] & 1;
+        const double *k = bond->stiffness, *c = bond->damping;
+        dem_bond_load now = dem_bond_now(w, bond);
+        dem_vec3 arm = second ? now.arm_b : now.arm_a;
+        double times = hold_whole(body_hold(&w->bodies, second ? bond->a : bond->b)) ? 1 : 2;
+        add_stiffness(w, p->stiffness, row, arm, now.axis, times * k[BOND_STRETCH], times * k[BOND_SHEAR]);
+        add_turning(w, p->stiffness, row, now.axis, times * k[BOND_TWIST], times * k[BOND_BEND]);
+        add_stiffness(w, p->damping, row, arm, now.axis, times * c[BOND_STRETCH], times * c[BOND_SHEAR]);
+        add_turning(w, p->damping, row, now.axis, times * c[BOND_TWIST], times * c[BOND_BEND]);
+    }
+}
+
 // the largest stable step of one body
 static dem_step_bound body_bound(const dem_world *w, size_t row, bool listed)
 {
@@ -207,8 +226,10 @@ static dem_step_bound body_bound(const dem_world *w, size_t row, bool listed)
         add_pairs(w, row, listed, &p);
         add_walls(w, row, listed, &p);
     }
+    if (w->bonds)
+        add_bonds(w, row, &p);
     double k = dem_largest_eigenvalue6(p.stiffness),
-           c = w->laws.damped || w->features.rolling ? dem_largest_eigenvalue6(p.damping) : 0;
+           c = w->laws.damped || w->features.rolling || w->bonds ? dem_largest_eigenvalue6(p.damping) : 0;
     return (dem_step_bound){k, c, limit_of(k, c), row};
 }
 

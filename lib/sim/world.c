@@ -3,6 +3,7 @@
 
 #include "base/status.h"
 #include "sim/bodies.h"
+#include "sim/bonds.h"
 #include "sim/broad.h"
 #include "sim/contacts.h"
 #include "sim/fluid.h"
@@ -18,6 +19,7 @@ static const char *const pass_names[DEM_PASSES] = {
     [DEM_PASS_PAIRS] = "contacts", [DEM_PASS_WALLS] = "walls",     [DEM_PASS_MOTION] = "motion",
     [DEM_PASS_SEARCH] = "search",  [DEM_PASS_REFRESH] = "refresh", [DEM_PASS_LISTS] = "lists",
     [DEM_PASS_STEP] = "time step", [DEM_PASS_MEASURE] = "measure",
+    [DEM_PASS_BONDS] = "bonds",
 };
 
 enum { THREADS_FROM = 512, DOMAINS = 8, DOMAIN_LEAST = 256, DOMAIN_MOST = 4096 };
@@ -143,6 +145,13 @@ static void set_holds(dem_world *w, const dem_body_def *defs, size_t count)
     w->other_motion = w->held || !dem_schemes_default(w->integrator);
 }
 
+// the contacts that bonds stand for leave the lists
+static dem_status make_bonds(dem_world *w, dem_error *error)
+{
+    DEM_TRY(dem_bonds_make(w, error));
+    return w->bonds->instead ? dem_lists_update(w, error) : DEM_OK;
+}
+
 static dem_status make_state(dem_world *w, const dem_scene *scene, dem_error *error)
 {
     dem_body_def *defs = NULL;
@@ -162,16 +171,18 @@ static dem_status make_state(dem_world *w, const dem_scene *scene, dem_error *er
     w->instance = dem_kernels_instance(w->kernels, still);
     w->wall_instance = dem_kernels_instance(w->kernels, w->features);
     dem_status status = dem_bodies_create(w, defs, count, error);
-    free(defs);
-    DEM_TRY(status);
     if (w->bodies.count < THREADS_FROM)
         w->threads = 1;
+    if (status == DEM_OK)
+        status = dem_bonds_create(w, scene, defs, error);
+    free(defs);
+    DEM_TRY(status);
     w->team = dem_team_create(w->threads);
     if (!w->team)
         return dem_fail_memory(error);
     DEM_TRY(dem_soft_create(w, scene->soft.tau, error));
     DEM_TRY(set_reach(w, error));
-    w->skin = larger(dem_broad_skin(w), 2.2 * w->reach);
+    w->skin = larger(larger(dem_broad_skin(w), 2.2 * w->reach), 1.1 * dem_bonds_gap(w));
     DEM_TRY(dem_search_create(w, error));
     if (w->periodic)
         DEM_TRY(dem_broad_images(w, error));
@@ -183,6 +194,8 @@ static dem_status make_state(dem_world *w, const dem_scene *scene, dem_error *er
     // good enough for the margins of the first lists
     w->next_step = w->last_step = w->time_def.step > 0 ? w->time_def.step : dem_step_guess(w);
     DEM_TRY(dem_lists_update(w, error));
+    if (w->bonds && w->bonds->due <= 0)
+        DEM_TRY(make_bonds(w, error));
     DEM_TRY(dem_step_choose(w, error));
     // the first step kicks for half of it, which takes the momenta from the time of the positions
     w->last_step = 0;
@@ -267,6 +280,7 @@ void dem_world_destroy(dem_world *w)
     dem_team_destroy(w->team);
     dem_views_release(&w->views);
     dem_regions_release(w->regions);
+    dem_bonds_release(w->bonds);
     void *all[] = {w->clumps,         w->shape_names, w->shifts,     w->mesh_touches, w->tallies,
                    w->motion_tallies, w->asked,       w->part_asked, w->parts,        w->fresh,
                    w->candidates,     w->pushes,      w->strained,   w->part_strained, w->servo_sums};
@@ -319,6 +333,19 @@ static void wall_pass(dem_world *w, size_t begin, size_t end, double kick)
                                                                  &w->tallies[(1 + form) * w->segment_count + i], NULL});
         }
     }
+}
+
+// when all threads have come to their end, adds what they left, too; tells when it was done
+static double bond_pass(dem_world *w, size_t begin, size_t end, double kick, size_t part)
+{
+    double t0 = dem_clock();
+    dem_bonds_compute(w, begin * DEM_SEGMENT, end * DEM_SEGMENT, kick, part);
+    dem_team_meet(w->team);
+    dem_bonds_add(w, begin * DEM_SEGMENT, end * DEM_SEGMENT);
+    double t1 = dem_clock();
+    if (part == 0)
+        w->clocks[DEM_PASS_BONDS].seconds += t1 - t0;
+    return t1;
 }
 
 static void motion_pass(dem_world *w, size_t begin, size_t end, double kick, size_t part)
@@ -408,8 +435,11 @@ static void step_part(void *user, int which)
         dem_soft_pairs(w, begin, end, kick, part);
     else
         contact_pass(w, begin, end, kick);
-    double t2 = dem_clock();
-    dem_team_meet(w->team);
+    double t2 = dem_clock(), bonded = t2;
+    if (w->bonds)
+        bonded = bond_pass(w, begin, end, kick, part);
+    else
+        dem_team_meet(w->team);
     dem_contacts_add_slots(w, begin * DEM_SEGMENT, end * DEM_SEGMENT);
     if (w->push_count) {
         dem_team_meet(w->team);
@@ -426,7 +456,7 @@ static void step_part(void *user, int which)
     double t4 = dem_clock();
     if (part == 0) {
         w->clocks[DEM_PASS_WALLS].seconds += t1 - t0;
-        w->clocks[DEM_PASS_PAIRS].seconds += t2 - t1 + (t3 - t2);
+        w->clocks[DEM_PASS_PAIRS].seconds += t2 - t1 + (t3 - bonded);
         w->clocks[DEM_PASS_MOTION].seconds += t4 - t3;
     }
 }
@@ -452,6 +482,17 @@ static void set_time(dem_world *w)
         dem_walls_place(&w->walls, dem_world_time(w));
 }
 
+// once the lists are those of the bonds that live, those whose time has come are made
+static dem_status tend_bonds(dem_world *w, dem_error *error)
+{
+    if (w->bonds->freed_count)
+        dem_bonds_account(w);
+    if (!(w->bonds->due <= dem_world_time(w)))
+        return DEM_OK;
+    DEM_TRY(dem_lists_renew(w, error));
+    return make_bonds(w, error);
+}
+
 static dem_status step_once(dem_world *w, dem_error *error)
 {
     double kick = dem_motion_kick(w);
@@ -469,8 +510,12 @@ static dem_status step_once(dem_world *w, dem_error *error)
     if (w->walls.servo)
         dem_servo_move(w);
     set_time(w);
+    if (w->bonds)
+        DEM_TRY(dem_bonds_settle(w, error));
     if (w->asked_count)
         DEM_TRY(dem_lists_update(w, error));
+    if (w->bonds)
+        DEM_TRY(tend_bonds(w, error));
     return dem_step_review(w, error);
 }
 
@@ -511,7 +556,7 @@ const dem_clump *dem_world_clump(const dem_world *w, uint32_t shape)
 
 const dem_pass_time *dem_world_passes(const dem_world *w, size_t *count)
 {
-    *count = DEM_PASSES;
+    *count = w->bonds ? DEM_PASSES : DEM_PASS_BONDS;
     return w->clocks;
 }
 

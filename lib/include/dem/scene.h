@@ -141,6 +141,7 @@ typedef struct dem_body_def {
     dem_vec3 velocity;     ///< [m/s]
     dem_vec3 spin;         ///< angular velocity, axes of space [rad/s]
     uint32_t hold;         ///< bits of dem_hold
+    const char *group;     ///< for bonds; NULL: none
 } dem_body_def;
 
 typedef enum dem_size_law {
@@ -180,6 +181,7 @@ typedef struct dem_fill_def {
     double gap;          ///< least distance between surfaces [m]
     dem_vec3 velocity;   ///< of all [m/s]
     uint32_t hold;       ///< of all, bits of dem_hold
+    const char *group;   ///< of all; NULL: none
     uint64_t seed;
 } dem_fill_def;
 
@@ -191,7 +193,38 @@ typedef struct dem_bodies_def {
     size_t fill_count;
 } dem_bodies_def;
 
-typedef enum dem_wall_kind { DEM_WALL_PLANE, DEM_WALL_CYLINDER, DEM_WALL_MESH } dem_wall_kind;
+typedef enum dem_wall_kind {
+    DEM_WALL_PLANE,
+    DEM_WALL_CYLINDER,
+    DEM_WALL_MESH,
+    DEM_WALL_CONE,       ///< with ends solid on both sides, also between equal radii and of no length
+    DEM_WALL_SPHERE,
+    DEM_WALL_DISC,       ///< solid on both sides
+    DEM_WALL_RECTANGLE,  ///< solid on both sides
+} dem_wall_kind;
+
+/// What a bond does to the contact of the two spheres it joins, while it lives.
+typedef enum dem_bond_contact {
+    DEM_BOND_PARALLEL,  ///< both act
+    DEM_BOND_INSTEAD,   ///< the bond alone acts
+} dem_bond_contact;
+
+/// Parallel bonds: elastic discs between spheres of different bodies (Potyondy & Cundall 2004; PHYSICS 1.7). One stands
+/// between every two spheres whose surfaces are near enough, half way between the surfaces.
+typedef struct dem_bond_def {
+    const char *name;
+    const char *between[2];      ///< groups of bodies, or shapes; NULL: all
+    double gap;                  ///< surfaces nearer than this are bonded [m]
+    double at;                   ///< when [s]
+    double radius_multiplier;    ///< radius of the disc over that of the smaller sphere [-]
+    double young;                ///< k_n = E / L, L between the spheres' centres [Pa]
+    double shear_ratio;          ///< k_s / k_n [-]
+    double tensile_strength;     ///< the bond breaks beyond this tension in the disc [Pa]; INFINITY: never
+    double shear_strength;       ///< and beyond this shear [Pa]
+    double moment_contribution;  ///< share of the moments in these stresses, 0..1 [-]
+    double damping;              ///< ratio of the dashpots of all four ways [-]
+    dem_bond_contact contact;
+} dem_bond_def;
 
 /// A sine about the place at time 0: the wall is shifted by `shift` (sin(2 pi f t + phase) - sin(phase)), and turned
 /// likewise.
@@ -239,10 +272,15 @@ typedef struct dem_wall_def {
     const char *name;
     dem_wall_kind kind;
     uint32_t material;
-    dem_vec3 point;         ///< of a plane; of a cylinder's axis [m]
-    dem_vec3 normal;        ///< unit, towards the bodies; of a cylinder: its axis
-    double radius;          ///< of a cylinder [m]
-    bool outside;           ///< the bodies are outside of a cylinder
+    dem_vec3 point;         ///< of a plane; of a cylinder's axis; where a cone begins; a centre [m]
+    dem_vec3 normal;        ///< unit, towards the bodies; of a cylinder or cone: its axis
+    double radius;          ///< of a cylinder, sphere or disc; of a cone where it begins [m]
+    bool outside;           ///< the bodies are outside of a cylinder, a sphere, a cone without an end
+    double length;          ///< of a cone; INFINITY: without an end, from its tip on [m]
+    double end_radius;      ///< of a cone with ends [m]
+    double angle;           ///< of a cone without an end, between axis and surface [rad]
+    dem_vec3 along;         ///< direction of a rectangle's first side
+    double size[2];         ///< of a rectangle [m]
     const char *mesh_file;  ///< resolved path
     dem_mesh mesh;          ///< [m]; read from mesh_file where that is given
     dem_vec3 velocity;      ///< [m/s]
@@ -374,6 +412,8 @@ typedef struct dem_scene {
     dem_bodies_def bodies;
     const dem_wall_def *walls;
     size_t wall_count;
+    const dem_bond_def *bonds;  ///< of two that fit the same spheres the first counts
+    size_t bond_count;
     dem_damping_def damping;
     dem_integrator_def integrator;
     dem_multiple multiple;
@@ -388,6 +428,8 @@ typedef struct dem_scene {
 DEM_API dem_scene dem_scene_defaults(void);
 /// A law between two materials with all defaults: linear, no stiffness yet, no damping, no friction.
 DEM_API dem_pair_law dem_pair_law_defaults(void);
+/// Bonds with all defaults: between all bodies whose spheres touch, unbreakable, no Young's modulus yet.
+DEM_API dem_bond_def dem_bond_defaults(void);
 
 /// Reads a scene file; the paths in it are relative to its folder. `overrides` are "path.to.key=value" texts, NULL
 /// behind the last (or NULL). Clumps, bodies' files and wall meshes are read too, so that a scene that was read is

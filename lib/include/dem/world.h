@@ -61,6 +61,31 @@ typedef struct dem_contact {
     dem_vec3 friction_force;        ///< on `body` [N]
 } dem_contact;
 
+typedef enum dem_bond_state {
+    DEM_BOND_INTACT,
+    DEM_BOND_BROKEN_TENSION,  ///< by stretch and bend
+    DEM_BOND_BROKEN_SHEAR,    ///< by shear and twist
+    DEM_BOND_LOST,            ///< one of its bodies is gone
+} dem_bond_state;
+
+/// One bond between spheres of two bodies. Of a broken one: point, stresses and time of the breakage, no force.
+typedef struct dem_bond_view {
+    uint32_t def;                   ///< index into the scene's bonds
+    uint32_t body, other;
+    uint32_t sphere, other_sphere;  ///< of the shapes
+    dem_bond_state state;
+    dem_vec3 point;         ///< half way between its ends; inside a periodic domain that of `body` [m]
+    dem_vec3 axis;          ///< unit, from `body` to `other`
+    dem_vec3 force;         ///< on `body`, dashpots included [N]
+    dem_vec3 moment;        ///< on `body`, about the point [N m]
+    double tensile_stress;  ///< largest in the disc, by stretch and bend [Pa]
+    double shear_stress;    ///< largest in the disc, by shear and twist [Pa]
+    double stress_ratio;    ///< the larger of the two over its strength [-]
+    double radius;          ///< of the disc [m]
+    double broken;          ///< time [s]; NAN: intact
+    uint64_t broken_step;
+} dem_bond_view;
+
 typedef struct dem_wall_view {
     dem_vec3 position;  ///< where the frame of time 0 has moved to [m]
     dem_quat orientation;
@@ -87,7 +112,7 @@ typedef struct dem_measure_view {
 typedef struct dem_energy {
     double kinetic, rotational;  ///< of translation, of rotation
     double potential;            ///< of gravity, 0 at the origin
-    double elastic;              ///< in the contacts
+    double elastic;              ///< in contacts and bonds
     double friction;             ///< dissipated by sliding
     double viscous;              ///< dissipated by the dashpots of contacts
     double broken;               ///< let go by bonds that broke
@@ -110,6 +135,8 @@ typedef struct dem_figures {
     double fastest;                ///< largest speed of a surface point [m/s]
     dem_vec3 centre;               ///< mean of the centres of mass, by mass [m]
     double highest;                ///< largest coordinate of a surface along -gravity (z without gravity) [m]
+    size_t bonds;                  ///< intact
+    size_t bonds_tension, bonds_shear;  ///< broken so far
     dem_energy energy;
 } dem_figures;
 
@@ -119,6 +146,8 @@ DEM_API dem_status dem_world_measure(dem_world *world, dem_error *error);
 DEM_API const dem_figures *dem_world_figures(const dem_world *world);
 DEM_API dem_body_view dem_world_bodies(const dem_world *world);
 DEM_API const dem_contact *dem_world_contacts(const dem_world *world, size_t *count);
+/// All that were ever made, broken ones too.
+DEM_API const dem_bond_view *dem_world_bonds(const dem_world *world, size_t *count);
 DEM_API const dem_wall_view *dem_world_walls(const dem_world *world, size_t *count);
 
 /// Of the scene's measures, in their order.
