@@ -24,6 +24,7 @@ struct dem_series {
     size_t size;  // bytes of whole rows
     size_t rows, wall_count, measure_count;
     wall_columns *walls;
+    bool bonds;
 };
 
 // ---- columns
@@ -127,6 +128,8 @@ static dem_status put_head(dem_buffer *out, const dem_series_def *def, dem_error
         for (int k = 0; k < MEASURE_COLUMNS; k++)
             dem_buffer_print(out, ",%s_%s", names[count + i].text, measures[k].name);
     }
+    if (def->bonds)
+        dem_buffer_text(out, ",bonds,bonds_broken_tension,bonds_broken_shear");
     dem_buffer_text(out, "\n");
     free(names);
     return out->failed ? dem_fail_memory(error) : DEM_OK;
@@ -188,6 +191,8 @@ static void put_row(dem_buffer *out, const dem_series *s, const dem_figures *fig
     }
     for (size_t i = 0; i < s->measure_count; i++)
         put_measure(out, &views[i]);
+    if (s->bonds)
+        dem_buffer_print(out, ",%zu,%zu,%zu", figures->bonds, figures->bonds_tension, figures->bonds_shear);
     dem_buffer_text(out, "\n");
 }
 
@@ -245,7 +250,8 @@ dem_status dem_series_open(const dem_series_def *def, double resume, dem_series 
     *s = (dem_series){.path = dem_path_join(def->directory, "series.csv"),
                       .file = -1,
                       .wall_count = def->wall_count,
-                      .measure_count = def->measure_count};
+                      .measure_count = def->measure_count,
+                      .bonds = def->bonds};
     s->walls = dem_alloc(def->wall_count, sizeof *s->walls);
     for (size_t i = 0; s->walls && i < def->wall_count; i++)
         s->walls[i] = columns_of(&def->walls[i]);
