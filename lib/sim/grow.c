@@ -41,6 +41,8 @@ static bool extend_segments(dem_world *w, size_t segments)
             good = good && extend(&w->wall_contacts[form].segments, old, segments, sizeof(dem_segment));
     if (w->mesh_touches)
         good = good && extend(&w->mesh_touches, old, segments, sizeof *w->mesh_touches);
+    if (w->wear_events)
+        good = good && extend(&w->wear_events, old, segments, sizeof *w->wear_events);
     good = good && extend_tallies(w, segments);
     if (good)
         w->segment_count = segments;
