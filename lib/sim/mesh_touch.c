@@ -138,7 +138,7 @@ static void put_geometry(const dem_contact_columns *c, size_t at, dem_vec3 norma
 }
 
 // springs go to the slots of the contacts that continue theirs
-static void hand_over(const dem_contact_columns *c, const dem_segment *s, dem_mesh_touches *t, dem_mesh_touch *touch,
+static void hand_over(const dem_contact_columns *c, const dem_contact_extras *extras, const dem_segment *s, dem_mesh_touches *t, dem_mesh_touch *touch,
                       const dem_mesh_contact *contacts, int count, double reach)
 {
     int from[DEM_MESH_CONTACTS];
@@ -150,12 +150,19 @@ static void hand_over(const dem_contact_columns *c, const dem_segment *s, dem_me
         bool goes_on = (int)k < count && from[k] >= 0;
         dem_history_put(c, segment_place(s, touch->slot + k), goes_on ? &old[from[k]] : &none);
     }
+    for (int e = 0; e < extras->count; e++) {
+        double *column = extras->column[e], number[DEM_MESH_CONTACTS];
+        for (uint32_t k = 0; k < touch->slot_count; k++)
+            number[k] = column[segment_place(s, touch->slot + k)];
+        for (uint32_t k = 0; k < touch->slot_count; k++)
+            column[segment_place(s, touch->slot + k)] = (int)k < count && from[k] >= 0 ? number[from[k]] : 0;
+    }
     for (int k = 0; k < count; k++)
         t->last[touch->slot + (uint32_t)k] = contacts[k];
     touch->last_count = (uint32_t)count;
 }
 
-static void measure_touch(dem_world *w, const dem_segment *s, dem_mesh_touches *t, dem_mesh_touch *touch)
+static void measure_touch(dem_world *w, const dem_contact_extras *extras, const dem_segment *s, dem_mesh_touches *t, dem_mesh_touch *touch)
 {
     const dem_contact_columns *c = &w->wall_contacts[DEM_FORM_MESH].columns;
     const dem_wall *wall = &w->walls.items[touch->wall];
@@ -167,7 +174,7 @@ static void measure_touch(dem_world *w, const dem_segment *s, dem_mesh_touches *
     if (count || touch->last_count) {
         double overlap = count ? larger(ball.radius - contacts[0].distance, 0) : 0;
         double moved = body_stride(&w->bodies, touch->a, w->last_step) + w->sweep_speed * w->last_step;
-        hand_over(c, s, t, touch, contacts, count, moved + 0.1 * sqrt(ball.radius * overlap));
+        hand_over(c, extras, s, t, touch, contacts, count, moved + 0.1 * sqrt(ball.radius * overlap));
     }
     dem_vec3 x = body_position(&w->bodies, touch->a);
     for (uint32_t k = 0; k < touch->slot_count; k++) {
@@ -183,9 +190,10 @@ static void measure_touch(dem_world *w, const dem_segment *s, dem_mesh_touches *
 
 void dem_mesh_touch_measure(dem_world *w, size_t begin, size_t end)
 {
+    dem_contact_extras extras = dem_extras_of(&w->wall_contacts[DEM_FORM_MESH].columns);
     for (size_t i = begin; i < end; i++) {
         dem_mesh_touches *t = &w->mesh_touches[i];
         for (size_t k = 0; k < t->count; k++)
-            measure_touch(w, &w->wall_contacts[DEM_FORM_MESH].segments[i], t, &t->items[k]);
+            measure_touch(w, &extras, &w->wall_contacts[DEM_FORM_MESH].segments[i], t, &t->items[k]);
     }
 }
