@@ -30,7 +30,7 @@ static dem_status read_scene(const dem_ctx *ctx, const char *path, dem_results *
     dem_json_release(root);
     if (!scene)
         return dem_fail_at(error, DEM_BAD_INPUT, path, 0, "holds no scene; name the output directory of dem-run");
-    status = dem_scene_read_text(ctx, scene, strlen(scene), path, "/", (const char *[]){"bodies=[]", NULL}, &r->scene,
+    status = dem_scene_read_text(ctx, scene, strlen(scene), path, "/", (const char *[]){"bodies=[]", "bonds={}", NULL}, &r->scene,
                                  error);
     free(scene);
     return status;

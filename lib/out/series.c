@@ -16,6 +16,7 @@ struct dem_series {
     int file;
     size_t size;  // bytes of whole rows
     size_t rows, wall_count, measure_count;
+    bool bonds;
 };
 
 // ---- columns
@@ -107,6 +108,8 @@ static dem_status put_head(dem_buffer *out, const dem_series_def *def, dem_error
         for (int k = 0; k < MEASURE_COLUMNS; k++)
             dem_buffer_print(out, ",%s_%s", names[count + i].text, measures[k].name);
     }
+    if (def->bonds)
+        dem_buffer_text(out, ",bonds,bonds_broken_tension,bonds_broken_shear");
     dem_buffer_text(out, "\n");
     free(names);
     return out->failed ? dem_fail_memory(error) : DEM_OK;
@@ -149,6 +152,8 @@ static void put_row(dem_buffer *out, const dem_series *s, const dem_figures *fig
     }
     for (size_t i = 0; i < s->measure_count; i++)
         put_measure(out, &views[i]);
+    if (s->bonds)
+        dem_buffer_print(out, ",%zu,%zu,%zu", figures->bonds, figures->bonds_tension, figures->bonds_shear);
     dem_buffer_text(out, "\n");
 }
 
@@ -206,7 +211,8 @@ dem_status dem_series_open(const dem_series_def *def, double resume, dem_series 
     *s = (dem_series){.path = dem_path_join(def->directory, "series.csv"),
                       .file = -1,
                       .wall_count = def->wall_count,
-                      .measure_count = def->measure_count};
+                      .measure_count = def->measure_count,
+                      .bonds = def->bonds};
     dem_status status = s->path ? dem_folder_create(def->directory, error) : dem_fail_memory(error);
     if (status == DEM_OK)
         status = put_head(&head, def, error);

@@ -94,6 +94,31 @@ static void put_held(dem_buffer *out, const dem_world *w)
     dem_buffer_text(out, "\n");
 }
 
+// of triangles; the rest of the form is smooth
+static size_t count_meshes(const dem_world *w)
+{
+    size_t count = 0;
+    for (size_t i = 0; i < w->walls.count; i++)
+        count += w->walls.items[i].mesh != NULL;
+    return count;
+}
+
+static void put_walls(dem_buffer *out, const dem_world *w)
+{
+    size_t meshes = count_meshes(w), smooth = count_walls(w, DEM_FORM_MESH) - meshes, servos = 0;
+    for (size_t i = 0; i < w->walls.count; i++)
+        servos += w->walls.items[i].servo.on;
+    if (meshes)
+        dem_buffer_text(out, "  mesh contacts: exact closest points on the listed triangles\n");
+    if (smooth)
+        dem_buffer_print(out, "  contacts of %zu cones, spheres, discs and rectangles: exact closest points\n", smooth);
+    if (w->walls.count)
+        dem_buffer_print(out, "  walls: %zu planes, %zu cylinders, %zu meshes\n", count_walls(w, DEM_FORM_PLANE),
+                         count_walls(w, DEM_FORM_CYLINDER), meshes);
+    if (servos)
+        dem_buffer_print(out, "  %zu servo walls: sums of their contacts, then a velocity\n", servos);
+}
+
 static void put_motion(dem_buffer *out, const dem_world *w, size_t isotropic)
 {
     const dem_scheme *t = &dem_translations[w->integrator.translation], *r = &dem_rotations[w->integrator.rotation];
@@ -138,21 +163,17 @@ static void put_bonds(dem_buffer *out, const dem_world *w)
 
 static void put_passes(dem_buffer *out, const dem_world *w)
 {
-    size_t isotropic = 0, meshes = count_walls(w, DEM_FORM_MESH);
+    size_t isotropic = 0, meshes = count_meshes(w);
     for (size_t row = 0; row < w->bodies.count; row++)
         isotropic += w->bodies.inertia[DEM_ROW * row + 7] > 0;
     dem_buffer_text(out, "passes of a step:\n");
     if (w->walls.move)
         dem_buffer_text(out, "  walls move to their place\n");
-    if (meshes)
-        dem_buffer_text(out, "  mesh contacts: exact closest points on the listed triangles\n");
     if (w->features.weighted)
         dem_buffer_text(out, "  weights of contacts that stand for the same pair\n");
     if (w->features.soft)
         dem_buffer_text(out, "  walls and pairs are soft: sums over the spheres of each pair, then one law for all of them\n");
-    if (w->walls.count)
-        dem_buffer_print(out, "  walls: %zu planes, %zu cylinders, %zu meshes\n", count_walls(w, DEM_FORM_PLANE),
-                         count_walls(w, DEM_FORM_CYLINDER), meshes);
+    put_walls(out, w);
     dem_buffer_text(out, "  contacts of pairs\n");
     if (w->segment_count * DEM_SEGMENT > w->domain_bodies)
         dem_buffer_print(out, "  momenta across domains of %zu bodies\n", w->domain_bodies);

@@ -83,6 +83,7 @@ typedef struct dem_contact_job {
 
 typedef void (*dem_contact_kernel)(dem_features f, const dem_rows *rows, const dem_contact_job *job);
 
+/// Contacts of the form MESH are measured in plain doubles before the pass: those of meshes, and of surfaces (surface.h).
 typedef enum dem_wall_form { DEM_FORM_PLANE, DEM_FORM_CYLINDER, DEM_FORM_MESH, DEM_WALL_FORMS } dem_wall_form;
 
 /// A kernel made for one set of features; the last of a set of instances serves all others.

@@ -458,8 +458,10 @@ dem_status dem_world_measure(dem_world *w, dem_error *error)
     gather(w);
     balance(w);
     if (w->regions) {
-        dem_body_view bodies = dem_world_bodies(w);
-        dem_regions_measure(w->regions, &bodies, v->contacts, v->contact_count);
+        dem_region_views views = {dem_world_bodies(w), v->contacts, v->contact_count, NULL, 0};
+        if (w->bonds)
+            views.bonds = dem_world_bonds(w, &views.bond_count);
+        dem_regions_measure(w->regions, &views);
     }
     v->figures.largest_overlap_ratio = fmax(largest_overlap(w), v->figures.overlap_ratio);
     w->clocks[DEM_PASS_MEASURE].seconds += dem_clock() - begin;

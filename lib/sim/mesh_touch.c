@@ -63,8 +63,35 @@ static bool search_ball(dem_world *w, size_t row, uint32_t sphere, uint32_t wall
     return touch.count == 0 || add_touch(t, touch);
 }
 
+// the same at a smooth surface, which has no triangles
+static bool search_surface(dem_world *w, size_t row, uint32_t wall, double margin, dem_mesh_touches *t, double *slack)
+{
+    const dem_template *shape = &w->templates.items[w->bodies.shape[row]];
+    const dem_wall *about = &w->walls.items[wall];
+    dem_vec3 centre = wall_from_space(about, body_position(&w->bodies, row));
+    *slack = dem_surface_distance(&about->surface, centre) - w->bodies.radius[row];
+    if (*slack > margin)
+        return true;
+    *slack = INFINITY;
+    for (uint32_t i = shape->first; i < shape->first + shape->count; i++) {
+        dem_ball ball = space_ball(w, row, i);
+        double gap = dem_surface_distance(&about->surface, wall_from_space(about, ball.centre)) - ball.radius;
+        dem_mesh_touch touch = {.a = (uint32_t)row,
+                                .sphere = i,
+                                .wall = wall,
+                                .first = (uint32_t)t->triangle_count,
+                                .slot_count = (uint32_t)dem_surface_most(&about->surface)};
+        if (gap < margin && !add_touch(t, touch))
+            return false;
+        *slack = smaller(*slack, larger(gap, margin));
+    }
+    return true;
+}
+
 bool dem_mesh_touch_search(dem_world *w, size_t row, uint32_t wall, double margin, dem_mesh_touches *t, double *slack)
 {
+    if (!w->walls.items[wall].mesh)
+        return search_surface(w, row, wall, margin, t, slack);
     const dem_template *shape = &w->templates.items[w->bodies.shape[row]];
     double radius = w->bodies.radius[row], look = larger(margin, LOOK_AROUND * radius);
     dem_vec3 centre = wall_from_space(&w->walls.items[wall], body_position(&w->bodies, row));
@@ -162,15 +189,24 @@ static void hand_over(const dem_contact_columns *c, const dem_contact_extras *ex
     touch->last_count = (uint32_t)count;
 }
 
-static void measure_touch(dem_world *w, const dem_contact_extras *extras, const dem_segment *s, dem_mesh_touches *t, dem_mesh_touch *touch)
+static int find_contacts(const dem_wall *wall, const dem_mesh_touches *t, const dem_mesh_touch *touch, dem_ball ball,
+                         double reach, dem_mesh_contact *contacts)
+{
+    dem_vec3 centre = wall_from_space(wall, ball.centre);
+    if (!wall->mesh)
+        return dem_surface_contacts(&wall->surface, centre, ball.radius + reach, contacts);
+    return dem_mesh_wall_contacts(wall->mesh, t->triangles + touch->first, touch->count, centre, ball.radius + reach,
+                                  contacts, (int)touch->slot_count);
+}
+
+static void measure_touch(dem_world *w, const dem_contact_extras *extras, const dem_segment *s, dem_mesh_touches *t,
+                          dem_mesh_touch *touch)
 {
     const dem_contact_columns *c = &w->wall_contacts[DEM_FORM_MESH].columns;
     const dem_wall *wall = &w->walls.items[touch->wall];
     dem_ball ball = space_ball(w, touch->a, touch->sphere);
     dem_mesh_contact contacts[DEM_MESH_CONTACTS];
-    int count =
-        dem_mesh_wall_contacts(wall->mesh, t->triangles + touch->first, touch->count,
-                               wall_from_space(wall, ball.centre), ball.radius + w->reach + w->ahead, contacts, (int)touch->slot_count);
+    int count = find_contacts(wall, t, touch, ball, w->reach + w->ahead, contacts);
     if (count || touch->last_count) {
         double overlap = count ? larger(ball.radius - contacts[0].distance, 0) : 0;
         double moved = body_stride(&w->bodies, touch->a, w->last_step) + w->sweep_speed * w->last_step;

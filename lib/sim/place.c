@@ -77,7 +77,7 @@ static double mesh_clearance(void *user, dem_vec3 centre, double radius)
     double least = p->look;
     for (size_t i = 0; i < p->w->walls.count; i++) {
         const dem_wall *wall = &p->w->walls.items[i];
-        if (wall->form != DEM_FORM_MESH || !dem_mesh_wall_near(wall->mesh, centre, least, &p->near))
+        if (!wall->mesh || !dem_mesh_wall_near(wall->mesh, centre, least, &p->near))
             continue;
         for (size_t k = 0; k < p->near.count; k++) {
             dem_closest c = triangle_closest(&wall->mesh->triangles[p->near.items[k]], centre);
@@ -90,7 +90,7 @@ static double mesh_clearance(void *user, dem_vec3 centre, double radius)
 static bool has_meshes(const dem_world *w)
 {
     for (size_t i = 0; i < w->walls.count; i++)
-        if (w->walls.items[i].form == DEM_FORM_MESH)
+        if (w->walls.items[i].mesh)
             return true;
     return false;
 }

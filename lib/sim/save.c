@@ -54,6 +54,11 @@ static uint64_t hash_wall(uint64_t h, const dem_wall *wall)
                         {s->mass, s->damping_rate, s->partner},
                         {s->extent[0].length, s->extent[1].length, 0}};
     h = hash_bytes(h, more, sizeof more);
+    const dem_surface *f = &wall->surface;
+    double form[] = {f->kind, f->begin,   f->run[0],  f->run[1],  f->endless,
+                     f->side, f->half[0], f->half[1], f->along.x, f->along.y,
+                     f->along.z};
+    h = hash_bytes(h, form, sizeof form);
     h = hash_bytes(h, m->oscillations, m->oscillation_count * sizeof *m->oscillations);
     h = hash_bytes(h, m->table.time, m->table.count * sizeof *m->table.time);
     h = hash_bytes(h, m->table.shift, m->table.count * sizeof *m->table.shift);

@@ -9,6 +9,7 @@ typedef struct wall_text {
     dem_wall_def wall;
     dem_wall_source source;
     dem_vec3 low, high;  ///< of a box
+    double radii[2];     ///< of a cone with ends
     bool turns;          ///< some part of the motion has set axis and point
     double stress[3];    ///< of a box: along x, y, z; NAN: no servo there
     bool three_stresses;

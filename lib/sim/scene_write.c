@@ -507,14 +507,29 @@ static void put_form(dem_json_writer *w, const dem_wall_def *wall, const dem_wal
         dem_json_put_string(w, "unit", source->unit ? source->unit : "m");
         return;
     }
-    bool plane = wall->kind == DEM_WALL_PLANE;
-    dem_json_open_object(w, plane ? "plane" : "cylinder");
-    put_vec(w, "point", wall->point);
-    put_vec(w, plane ? "normal" : "axis", wall->normal);
-    if (!plane) {
+    static const char *const keys[] = {
+        [DEM_WALL_PLANE] = "plane", [DEM_WALL_DISC] = "plane",   [DEM_WALL_RECTANGLE] = "plane",
+        [DEM_WALL_CONE] = "cone",   [DEM_WALL_SPHERE] = "sphere", [DEM_WALL_CYLINDER] = "cylinder"};
+    bool plane = strcmp(keys[wall->kind], "plane") == 0, sphere = wall->kind == DEM_WALL_SPHERE;
+    bool cone = wall->kind == DEM_WALL_CONE, endless = cone && isinf(wall->length);
+    dem_json_open_object(w, keys[wall->kind]);
+    put_vec(w, sphere ? "centre" : endless ? "apex" : "point", wall->point);
+    if (!sphere)
+        put_vec(w, plane ? "normal" : "axis", wall->normal);
+    if (wall->kind == DEM_WALL_DISC || sphere || wall->kind == DEM_WALL_CYLINDER)
         dem_json_put_number(w, "radius", wall->radius);
-        dem_json_put_string(w, "side", wall->outside ? "outside" : "inside");
+    if (wall->kind == DEM_WALL_RECTANGLE) {
+        dem_json_put_numbers(w, "size", wall->size, 2);
+        put_vec(w, "along", wall->along);
     }
+    if (endless)
+        dem_json_put_number(w, "angle", wall->angle);
+    else if (cone) {
+        dem_json_put_numbers(w, "radii", (double[]){wall->radius, wall->end_radius}, 2);
+        dem_json_put_number(w, "length", wall->length);
+    }
+    if (sphere || endless || wall->kind == DEM_WALL_CYLINDER)
+        dem_json_put_string(w, "side", wall->outside ? "outside" : "inside");
     dem_json_close(w, '}');
 }
 

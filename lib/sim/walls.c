@@ -11,7 +11,9 @@
 static const double FAR_AWAY = 1e155;  // [m] farther than any dummy body
 
 static const dem_wall_form form_of[] = {
-    [DEM_WALL_PLANE] = DEM_FORM_PLANE, [DEM_WALL_CYLINDER] = DEM_FORM_CYLINDER, [DEM_WALL_MESH] = DEM_FORM_MESH};
+    [DEM_WALL_PLANE] = DEM_FORM_PLANE, [DEM_WALL_CYLINDER] = DEM_FORM_CYLINDER, [DEM_WALL_MESH] = DEM_FORM_MESH,
+    [DEM_WALL_CONE] = DEM_FORM_MESH,   [DEM_WALL_SPHERE] = DEM_FORM_MESH,      [DEM_WALL_DISC] = DEM_FORM_MESH,
+    [DEM_WALL_RECTANGLE] = DEM_FORM_MESH};
 
 // a surface that moves along itself stays where it is: a plane within itself, a cylinder about its own axis
 static bool sweeps(const dem_wall *w)
@@ -19,7 +21,7 @@ static bool sweeps(const dem_wall *w)
     const dem_wall_motion *m = &w->motion;
     double little = 1e-12;
     if (w->servo.on || w->form == DEM_FORM_MESH)
-        return w->moves;
+        return w->moves && (w->servo.on || m->shifts || !dem_surface_turns_in_place(&w->surface, m->through, m->axis));
     if (m->shifts && !(v3_norm2(m->shift_only) > 0))
         return true;
     double across = v3_norm(v3_cross(m->axis, w->normal));
@@ -42,13 +44,14 @@ static dem_status make_wall(const dem_ctx *ctx, const dem_wall_def *def, dem_wal
                        .radius = def->outside ? -def->radius : def->radius,
                        .motion = dem_wall_motion_of(def),
                        .servo = def->servo,
+                       .surface = dem_surface_of(def),
                        .orientation = {1, 0, 0, 0}};
     bool owned = dem_wall_motion_own(&wall->motion);
     if (!wall->name || !owned)
         return dem_fail_memory(error);
     wall->moves = dem_wall_motion_any(&wall->motion) || wall->servo.on;
     wall->sweeps = wall->moves && sweeps(wall);
-    if (wall->form == DEM_FORM_MESH)
+    if (def->kind == DEM_WALL_MESH)
         return dem_mesh_wall_create(ctx, &def->mesh, wall->name, &wall->mesh, error);
     return DEM_OK;
 }

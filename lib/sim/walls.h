@@ -5,11 +5,10 @@
 #include "dem/scene.h"
 #include "math/quat.h"
 #include "sim/kernels.h"
+#include "sim/surface.h"
 #include "sim/wall_motion.h"
 
 enum { DEM_WALL_ROW = 16 };
-
-typedef struct dem_mesh_wall dem_mesh_wall;
 
 typedef struct dem_wall {
     char *name;
@@ -17,7 +16,8 @@ typedef struct dem_wall {
     uint32_t material;
     dem_vec3 point, normal;  ///< at time 0; see dem_wall_def
     double radius;           ///< of a cylinder, negative where the bodies are outside [m]
-    dem_mesh_wall *mesh;     ///< in the frame of time 0
+    dem_mesh_wall *mesh;     ///< in the frame of time 0; NULL: none
+    dem_surface surface;     ///< of the form MESH without a mesh, in that frame
     dem_wall_motion motion;
     dem_servo_def servo;
     double travel, speed;  ///< of a servo, along its direction, now [m], [m/s]

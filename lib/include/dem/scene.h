@@ -203,6 +203,16 @@ typedef struct dem_bodies_def {
     size_t fill_count;
 } dem_bodies_def;
 
+typedef enum dem_wall_kind {
+    DEM_WALL_PLANE,
+    DEM_WALL_CYLINDER,
+    DEM_WALL_MESH,
+    DEM_WALL_CONE,       ///< with ends solid on both sides, also between equal radii and of no length
+    DEM_WALL_SPHERE,
+    DEM_WALL_DISC,       ///< solid on both sides
+    DEM_WALL_RECTANGLE,  ///< solid on both sides
+} dem_wall_kind;
+
 /// What a bond does to the contact of the two spheres it joins, while it lives.
 typedef enum dem_bond_contact {
     DEM_BOND_PARALLEL,  ///< both act
@@ -225,8 +235,6 @@ typedef struct dem_bond_def {
     double damping;              ///< ratio of the dashpots of all four ways [-]
     dem_bond_contact contact;
 } dem_bond_def;
-
-typedef enum dem_wall_kind { DEM_WALL_PLANE, DEM_WALL_CYLINDER, DEM_WALL_MESH } dem_wall_kind;
 
 /// A sine about the place at time 0: the wall is shifted by `shift` (sin(2 pi f t + phase) - sin(phase)), and turned
 /// likewise.
@@ -274,10 +282,15 @@ typedef struct dem_wall_def {
     const char *name;
     dem_wall_kind kind;
     uint32_t material;
-    dem_vec3 point;         ///< of a plane; of a cylinder's axis [m]
-    dem_vec3 normal;        ///< unit, towards the bodies; of a cylinder: its axis
-    double radius;          ///< of a cylinder [m]
-    bool outside;           ///< the bodies are outside of a cylinder
+    dem_vec3 point;         ///< of a plane; of a cylinder's axis; where a cone begins; a centre [m]
+    dem_vec3 normal;        ///< unit, towards the bodies; of a cylinder or cone: its axis
+    double radius;          ///< of a cylinder, sphere or disc; of a cone where it begins [m]
+    bool outside;           ///< the bodies are outside of a cylinder, a sphere, a cone without an end
+    double length;          ///< of a cone; INFINITY: without an end, from its tip on [m]
+    double end_radius;      ///< of a cone with ends [m]
+    double angle;           ///< of a cone without an end, between axis and surface [rad]
+    dem_vec3 along;         ///< direction of a rectangle's first side
+    double size[2];         ///< of a rectangle [m]
     const char *mesh_file;  ///< resolved path
     dem_mesh mesh;          ///< [m]; read from mesh_file where that is given
     dem_vec3 velocity;      ///< [m/s]
