@@ -55,7 +55,8 @@ static void columns_are_named_with_their_units(void **state)
                         "local_J,drag_J,work_J,energy_error,contacts,wall_contacts,coordination,overlap_ratio,centre_x_m,centre_y_m,"
                         "centre_z_m,highest_m,floor_fx_N,floor_fy_N,floor_fz_N,floor_mx_Nm,floor_my_Nm,floor_mz_Nm,"
                         "drum_fx_N,drum_fy_N,drum_fz_N,drum_mx_Nm,drum_my_Nm,drum_mz_Nm,lid__moving_fx_N,"
-                        "lid__moving_fy_N,lid__moving_fz_N,lid__moving_mx_Nm,lid__moving_my_Nm,lid__moving_mz_Nm\n");
+                        "lid__moving_fy_N,lid__moving_fz_N,lid__moving_mx_Nm,lid__moving_my_Nm,lid__moving_mz_Nm,"
+                        "lid__moving_x_m,lid__moving_y_m,lid__moving_z_m\n");
     dem_buffer_release(&text);
 }
 

@@ -10,6 +10,7 @@
 #include "base/memory.h"
 #include "base/status.h"
 #include "math/quat.h"
+#include "out/frames.h"
 #include "sim/bodies_csv.h"
 #include "sim/place.h"
 #include "sim/scene.h"
@@ -100,6 +101,17 @@ static dem_status make_columns(dem_results *r, size_t n, columns *c, dem_error *
     return DEM_OK;
 }
 
+// of the frame that was read, or the last one before a state that is none
+static dem_vec3 shift_of(const dem_results *r, size_t wall)
+{
+    const dem_vtp *v = &r->frame.vtp;
+    for (size_t i = 0; i < v->field_count; i++)
+        if (strcmp(v->fields[i].name, DEM_WALL_SHIFTS) == 0 && v->fields[i].type == DEM_VTP_FLOAT64 &&
+            v->fields[i].width == 3 * (int)r->scene.wall_count)
+            return ((const dem_vec3 *)v->fields[i].data)[wall];
+    return v3(0, 0, 0);
+}
+
 static dem_status place_walls(dem_results *r, dem_error *error)
 {
     free(r->walls);
@@ -111,7 +123,7 @@ static dem_status place_walls(dem_results *r, dem_error *error)
         double time = isfinite(r->time) ? r->time : 0;
         dem_wall_motion motion = dem_wall_motion_of(w);
         dem_wall_moment now = dem_wall_motion_at(&motion, time);
-        r->walls[i].position = dem_wall_pose(&motion, &now, v3(0, 0, 0), &r->walls[i].orientation);
+        r->walls[i].position = dem_wall_pose(&motion, &now, shift_of(r, i), &r->walls[i].orientation);
     }
     return DEM_OK;
 }
@@ -272,7 +284,11 @@ dem_status dem_results_last(dem_results *r, dem_error *error)
     bool whole = access(final, F_OK) == 0;  // a run that was stopped has none
     double last = n ? r->index.entries[n - 1].time : NAN;
     dem_status status;
-    if (n && (!whole || fabs(last - r->end) <= 1e-9 * fabs(r->end))) {
+    // only frames know where servo walls are
+    bool servo = false;
+    for (size_t i = 0; i < r->scene.wall_count; i++)
+        servo |= r->scene.walls[i].servo.on;
+    if (n && (!whole || servo || fabs(last - r->end) <= 1e-9 * fabs(r->end))) {
         status = dem_results_frame(r, n - 1, error);
     } else {
         release_bodies(r);

@@ -112,6 +112,9 @@ static void put_walls(dem_buffer *out, const dem_world *w)
                          count_walls(w, DEM_FORM_CYLINDER), meshes);
     if (servos)
         dem_buffer_print(out, "  %zu servo walls: sums of their contacts, then a velocity\n", servos);
+    if (w->walls.wear)
+        dem_buffer_print(out, "  wear of walls, %s\n",
+                         w->walls.rub ? "by the force and path of each contact" : "when a body begins to touch");
 }
 
 static void put_motion(dem_buffer *out, const dem_world *w, size_t isotropic)

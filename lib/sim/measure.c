@@ -8,6 +8,7 @@
 #include "sim/bonds.h"
 #include "sim/fluid.h"
 #include "sim/motion.h"
+#include "sim/servo.h"
 
 dem_status dem_views_create(dem_world *w, dem_error *error)
 {
@@ -100,8 +101,7 @@ static dem_status visit_segments(dem_world *w, dem_contacts *contacts, int form,
 dem_status dem_visit_contacts(dem_world *w, dem_contact_visit visit, void *user, dem_error *error)
 {
     // finds the contacts of meshes as they stand; doing so again in the next step changes nothing
-    if (w->mesh_touches)
-        dem_mesh_touch_measure(w, 0, w->segment_count);
+    DEM_TRY(dem_mesh_touch_measure_all(w, error));
     dem_weigh_contacts(w, 0, w->segment_count);
     DEM_TRY(visit_segments(w, &w->contacts, -1, visit, user, error));
     for (int form = 0; form < DEM_WALL_FORMS; form++)
@@ -433,6 +433,21 @@ static double largest_overlap(const dem_world *w)
     return largest;
 }
 
+// what walls have of themselves
+static void note_walls(dem_world *w)
+{
+    for (size_t i = 0; i < w->walls.count; i++) {
+        const dem_wall *wall = &w->walls.items[i];
+        dem_wall_view *view = &w->views.walls[i];
+        double area = wall->servo.on ? dem_servo_area(&w->walls, i) : 0;
+        view->pressure = area > 0 ? -v3_dot(view->force, wall->servo.direction) / area : NAN;
+        view->wear = wall->worn;
+        view->wear_count = wall->worn_count;
+        for (size_t k = 0; k < wall->worn_count; k++)
+            view->worn += wall->worn[k];
+    }
+}
+
 dem_status dem_world_measure(dem_world *w, dem_error *error)
 {
     double begin = dem_clock();
@@ -454,6 +469,7 @@ dem_status dem_world_measure(dem_world *w, dem_error *error)
         return dem_fail_memory(error);
     if (w->bonds)
         DEM_TRY(dem_bonds_measure(w, error));
+    note_walls(w);
     gather(w);
     balance(w);
     if (w->regions) {

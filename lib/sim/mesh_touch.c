@@ -4,6 +4,7 @@
 #include <string.h>
 
 #include "sim/contacts.h"
+#include "sim/wear.h"
 
 static const double LOOK_AROUND = 0.5;  // of the bounding radius: how far triangles are asked for, at least
 
@@ -216,11 +217,46 @@ static void measure_touch(dem_world *w, const dem_segment *s, dem_mesh_touches *
     }
 }
 
+// A body's balls at one wall, from touch k on: where none touched in the last step and one does now, it has struck the
+// wall. Returns the first touch behind them.
+static size_t measure_body(dem_world *w, size_t segment, size_t k)
+{
+    dem_mesh_touches *t = &w->mesh_touches[segment];
+    const dem_segment *s = &w->wall_contacts[DEM_FORM_MESH].segments[segment];
+    uint32_t row = t->items[k].a, wall = t->items[k].wall;
+    const dem_mesh_contact *deepest = NULL;
+    double most = 0;
+    bool before = false;
+    for (; k < t->count && t->items[k].a == row && t->items[k].wall == wall; k++) {
+        dem_mesh_touch *touch = &t->items[k];
+        double radius = w->templates.spheres[touch->sphere][3] * body_scale(&w->bodies, row);
+        for (uint32_t i = 0; i < touch->last_count; i++)
+            before |= t->last[touch->slot + i].distance < radius;
+        measure_touch(w, s, t, touch);
+        if (touch->last_count && radius - t->last[touch->slot].distance > most) {
+            deepest = &t->last[touch->slot];
+            most = radius - deepest->distance;
+        }
+    }
+    if (deepest && !before && w->walls.items[wall].wear.law == DEM_WEAR_FINNIE)
+        dem_wear_strike(w, segment, row, wall, deepest);
+    return k;
+}
+
 void dem_mesh_touch_measure(dem_world *w, size_t begin, size_t end)
 {
     for (size_t i = begin; i < end; i++) {
         dem_mesh_touches *t = &w->mesh_touches[i];
-        for (size_t k = 0; k < t->count; k++)
+        for (size_t k = 0; k < t->count && w->walls.wear;)
+            k = measure_body(w, i, k);
+        for (size_t k = 0; k < t->count && !w->walls.wear; k++)
             measure_touch(w, &w->wall_contacts[DEM_FORM_MESH].segments[i], t, &t->items[k]);
     }
+}
+
+dem_status dem_mesh_touch_measure_all(dem_world *w, dem_error *error)
+{
+    if (w->mesh_touches)
+        dem_mesh_touch_measure(w, 0, w->segment_count);
+    return w->walls.wear ? dem_wear_settle(w, error) : DEM_OK;
 }

@@ -54,6 +54,10 @@ static uint64_t hash_wall(uint64_t h, const dem_wall *wall)
                         {s->mass, s->damping_rate, s->partner},
                         {s->extent[0].length, s->extent[1].length, 0}};
     h = hash_bytes(h, more, sizeof more);
+    const dem_wear_def *wear = &wall->wear;
+    double law[] = {wear->law,       wear->constant,    wear->pressure, wear->psi,
+                    wear->roughness, wear->coefficient, wear->hardness, (double)wall->worn_count};
+    h = hash_bytes(h, law, sizeof law);
     const dem_surface *f = &wall->surface;
     double form[] = {f->kind, f->begin,   f->run[0],  f->run[1],  f->endless,
                      f->side, f->half[0], f->half[1], f->along.x, f->along.y,
@@ -298,6 +302,8 @@ static void pass_walls(cursor *c, dem_world *w)
         pass(c, &w->walls.items[i].travel, sizeof(double));
         pass(c, &w->walls.items[i].speed, sizeof(double));
     }
+    for (size_t i = 0; w->walls.wear && i < w->walls.count; i++)
+        pass(c, w->walls.items[i].worn, w->walls.items[i].worn_count * sizeof(double));
 }
 
 static void pass_state(cursor *c, dem_world *w)
@@ -403,6 +409,8 @@ uint64_t dem_world_hash(const dem_world *w)
     hash = hash_bytes(hash, b->path, b->count * sizeof *b->path);
     for (size_t i = 0; w->walls.servo && i < w->walls.count; i++)
         hash = hash_bytes(hash, (double[]){w->walls.items[i].travel, w->walls.items[i].speed}, 2 * sizeof(double));
+    for (size_t i = 0; w->walls.wear && i < w->walls.count; i++)
+        hash = hash_bytes(hash, w->walls.items[i].worn, w->walls.items[i].worn_count * sizeof(double));
     for (int form = -1; form < DEM_WALL_FORMS; form++) {
         const dem_contacts *contacts = form < 0 ? &w->contacts : &w->wall_contacts[form];
         for (size_t i = 0; contacts->segments && i < w->segment_count; i++) {

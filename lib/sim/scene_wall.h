@@ -16,8 +16,8 @@ typedef struct wall_text {
     uint64_t servo_given;
 } wall_text;
 
-extern const dem_fields dem_wall_motion_fields, dem_wall_servo_fields;
-dem_field_reader dem_wall_read_motion, dem_wall_read_servo;  ///< into a wall_text
+extern const dem_fields dem_wall_motion_fields, dem_wall_servo_fields, dem_wall_wear_fields;
+dem_field_reader dem_wall_read_motion, dem_wall_read_servo, dem_wall_read_wear;  ///< into a wall_text
 
 /// Whether the servo suits the form of the wall. `v`: the servo.
 dem_status dem_wall_check_servo(dem_scene_reader *r, const dem_scene_value *v, wall_text *text, bool box, bool plane);

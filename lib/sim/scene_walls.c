@@ -154,7 +154,7 @@ static dem_status read_unit(dem_scene_reader *r, const dem_scene_value *v, const
     return DEM_OK;
 }
 
-enum { WALL_MATERIAL, WALL_PLANE, WALL_BOX, WALL_CYLINDER, WALL_CONE, WALL_SPHERE, WALL_MESH, WALL_UNIT, WALL_MOTION, WALL_SERVO };
+enum { WALL_MATERIAL, WALL_PLANE, WALL_BOX, WALL_CYLINDER, WALL_CONE, WALL_SPHERE, WALL_MESH, WALL_UNIT, WALL_MOTION, WALL_SERVO, WALL_WEAR };
 static const dem_field wall_table[] = {
     [WALL_MATERIAL] = {"material", dem_field_material, .at = offsetof(wall_text, wall.material), true},
     [WALL_PLANE] = {"plane", read_plane, .fields = &plane_fields},
@@ -166,7 +166,7 @@ static const dem_field wall_table[] = {
     [WALL_UNIT] = {"unit", read_unit, .at = offsetof(wall_text, source.unit)},
     [WALL_MOTION] = {"motion", dem_wall_read_motion, .fields = &dem_wall_motion_fields},
     [WALL_SERVO] = {"servo", dem_wall_read_servo, .fields = &dem_wall_servo_fields},
-    DEM_UNBUILT("wear"),
+    [WALL_WEAR] = {"wear", dem_wall_read_wear, .fields = &dem_wall_wear_fields},
 };
 const dem_fields dem_wall_fields = DEM_FIELDS(wall_table);
 
@@ -243,6 +243,10 @@ static dem_status read_wall(dem_scene_reader *r, const dem_scene_value *v, const
         dem_scene_value servo = dem_scene_member(v, "servo");
         DEM_TRY(dem_wall_check_servo(r, &servo, &text, dem_given(given, WALL_BOX), dem_given(given, WALL_PLANE)));
     }
+    bool endless = text.wall.kind == DEM_WALL_PLANE && !dem_given(given, WALL_MESH);
+    if (text.wall.wear.law != DEM_WEAR_NONE && (endless || dem_given(given, WALL_CYLINDER)))
+        return dem_scene_refuse(r, v, "take a mesh, or a plane with \"size\" or \"radius\", a cone or a sphere",
+                                "\"wear\" needs a wall with ends");
     if (dem_given(given, WALL_BOX))
         return add_box(r, v, &text);
     if (dem_given(given, WALL_MESH))

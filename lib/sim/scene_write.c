@@ -493,6 +493,23 @@ static void put_servo(dem_json_writer *w, const dem_scene *scene, const dem_serv
     dem_json_close(w, '}');
 }
 
+static void put_wear(dem_json_writer *w, const dem_wear_def *wear)
+{
+    bool finnie = wear->law == DEM_WEAR_FINNIE;
+    dem_json_open_object(w, "wear");
+    dem_json_put_string(w, "law", finnie ? "finnie" : "archard");
+    if (finnie) {
+        dem_json_put_number(w, "pressure", wear->pressure);
+        dem_json_put_number(w, "constant", wear->constant);
+        dem_json_put_number(w, "psi", wear->psi);
+        dem_json_put_number(w, "roughness", wear->roughness);
+    } else {
+        dem_json_put_number(w, "coefficient", wear->coefficient);
+        dem_json_put_number(w, "hardness", wear->hardness);
+    }
+    dem_json_close(w, '}');
+}
+
 static void put_form(dem_json_writer *w, const dem_wall_def *wall, const dem_wall_source *source)
 {
     if (wall->kind == DEM_WALL_MESH) {
@@ -546,6 +563,8 @@ static dem_status put_walls(dem_json_writer *w, const dem_scene *scene, dem_erro
         put_motion(w, wall, &source);
         if (wall->servo.on)
             put_servo(w, scene, &wall->servo);
+        if (wall->wear.law != DEM_WEAR_NONE)
+            put_wear(w, &wall->wear);
         dem_json_close(w, '}');
     }
     dem_json_close(w, '}');

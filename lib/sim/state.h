@@ -134,6 +134,18 @@ typedef struct dem_servo_sum {
     double hardness;  ///< of the contacts [N/m]
 } dem_servo_sum;
 
+typedef struct dem_wear_event {
+    uint32_t wall, triangle;
+    double volume;  ///< [m^3]
+} dem_wear_event;
+
+/// What a segment's bodies have taken off walls, until it is added there.
+typedef struct dem_wear_events {
+    dem_wear_event *items;
+    size_t count, capacity;
+    bool failed;
+} dem_wear_events;
+
 typedef struct dem_views {
     uint32_t *shape, *coordination, *by_row;  ///< by_row: body of a row
     double *scale, *mass;
@@ -219,7 +231,8 @@ struct dem_world {
     size_t push_count, push_capacity;
     dem_views views;
     dem_regions *regions;  ///< NULL: nothing is measured by region
-    dem_servo_sum *servo_sums;  ///< [segments * walls] (servo)
+    dem_servo_sum *servo_sums;     ///< [segments * walls] (servo)
+    dem_wear_events *wear_events;  ///< [segments] (wear)
     dem_pass_time clocks[DEM_PASSES];
     uint64_t searches;  ///< for pairs, since the world was made
     double warned[8];

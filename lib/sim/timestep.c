@@ -235,9 +235,7 @@ static dem_step_bound body_bound(const dem_world *w, size_t row, bool listed)
 
 dem_status dem_step_stable(dem_world *w, bool listed, dem_step_bound *bound, dem_error *error)
 {
-    (void)error;
-    if (w->mesh_touches)
-        dem_mesh_touch_measure(w, 0, w->segment_count);
+    DEM_TRY(dem_mesh_touch_measure_all(w, error));
     *bound = (dem_step_bound){.step = INFINITY};
     for (size_t row = 0; row < w->bodies.count; row++) {
         dem_step_bound own = body_bound(w, row, listed);

@@ -20,6 +20,9 @@ typedef struct dem_wall {
     dem_surface surface;     ///< of the form MESH without a mesh, in that frame
     dem_wall_motion motion;
     dem_servo_def servo;
+    dem_wear_def wear;
+    double *worn;  ///< [worn_count] by triangle as given, or of the whole [m^3] (wear)
+    size_t worn_count;
     double travel, speed;  ///< of a servo, along its direction, now [m], [m/s]
     bool moves;            ///< its surface has a velocity
     bool sweeps;           ///< ... and its shape does not stay in place
@@ -34,7 +37,7 @@ typedef struct dem_walls {
     dem_wall *items;
     size_t count;
     double *rows;
-    bool move, sweep, servo;  ///< some do, some are
+    bool move, sweep, servo, wear, rub;  ///< some do, some are; rub: wear by Archard
 } dem_walls;
 
 /// Errors: DEM_BAD_INPUT, DEM_UNAVAILABLE for a mesh without Embree.

@@ -14,6 +14,7 @@
 #include "sim/schemes.h"
 #include "sim/servo.h"
 #include "sim/timestep.h"
+#include "sim/wear.h"
 
 static const char *const pass_names[DEM_PASSES] = {
     [DEM_PASS_PAIRS] = "contacts", [DEM_PASS_WALLS] = "walls",     [DEM_PASS_MOTION] = "motion",
@@ -59,7 +60,7 @@ static void set_features(dem_world *w, const dem_body_def *defs, size_t count)
     f->ledger = w->ledger && (w->laws.damped || f->jkr || f->friction || features_turning(*f) || w->walls.move);
     f->periodic = w->periodic;
     f->moving = w->walls.move;
-    f->reaction = w->walls.servo;
+    f->reaction = w->walls.servo || w->walls.rub;
     f->weighted = w->multiple == DEM_MULTIPLE_MEAN || w->multiple == DEM_MULTIPLE_MERGE;
     f->soft = w->multiple == DEM_MULTIPLE_SOFT;
     for (size_t i = 0; i < count; i++) {
@@ -92,6 +93,7 @@ static dem_status make_lists(dem_world *w, dem_error *error)
         w->mesh_touches = dem_alloc_zero(w->segment_count, sizeof *w->mesh_touches);
     w->tallies = dem_alloc_zero(w->segment_count * (1 + DEM_WALL_FORMS), sizeof *w->tallies);
     w->motion_tallies = dem_alloc_zero(w->segment_count, sizeof *w->motion_tallies);
+    w->wear_events = dem_alloc_zero(w->walls.wear ? w->segment_count : 0, sizeof *w->wear_events);
     w->servo_sums = dem_alloc_zero(w->walls.servo ? w->segment_count * w->walls.count : 0, sizeof *w->servo_sums);
     w->asked = dem_alloc(w->bodies.padded, sizeof *w->asked);
     w->strained = dem_alloc(w->features.watch ? w->bodies.padded : 0, sizeof *w->strained);
@@ -99,7 +101,7 @@ static dem_status make_lists(dem_world *w, dem_error *error)
     w->part_asked = dem_alloc_zero((size_t)w->threads + 1, sizeof *w->part_asked);
     w->parts = dem_alloc_zero((size_t)w->threads + 1, sizeof *w->parts);
     w->candidates = dem_alloc_zero((size_t)w->threads, sizeof *w->candidates);
-    if ((used(w, DEM_FORM_MESH) && !w->mesh_touches) || !w->tallies || !w->motion_tallies || !w->servo_sums || !w->asked ||
+    if ((used(w, DEM_FORM_MESH) && !w->mesh_touches) || !w->tallies || !w->motion_tallies || !w->servo_sums || !w->wear_events || !w->asked ||
         !w->part_asked || !w->strained || !w->part_strained || !w->parts || !w->candidates)
         return dem_fail_memory(error);
     size_t longest = 0;
@@ -160,9 +162,9 @@ static dem_status make_state(dem_world *w, const dem_scene *scene, dem_error *er
     DEM_TRY(dem_templates_create(scene, &w->templates, error));
     DEM_TRY(dem_laws_create(scene, &w->laws, error));
     DEM_TRY(dem_walls_create(w->ctx, scene, &w->walls, error));
-    if (w->walls.servo && w->multiple == DEM_MULTIPLE_SOFT)
+    if ((w->walls.servo || w->walls.rub) && w->multiple == DEM_MULTIPLE_SOFT)
         return dem_fail(error, DEM_BAD_INPUT,
-                        "servo walls cannot measure soft contacts yet; set contacts_between_clumps to \"sum\"");
+                        "servo walls and wear by Archard cannot measure soft contacts yet; set contacts_between_clumps to \"sum\"");
     DEM_TRY(dem_place_bodies(w, scene, &defs, &count, error));
     set_holds(w, defs, count);
     set_features(w, defs, count);
@@ -277,13 +279,15 @@ void dem_world_destroy(dem_world *w)
         free(w->candidates[t].work);
     }
     dem_soft_release(w);
+    for (size_t i = 0; w->wear_events && w->walls.wear && i < w->segment_count; i++)
+        free(w->wear_events[i].items);
     dem_team_destroy(w->team);
     dem_views_release(&w->views);
     dem_regions_release(w->regions);
     dem_bonds_release(w->bonds);
     void *all[] = {w->clumps,         w->shape_names, w->shifts,     w->mesh_touches, w->tallies,
                    w->motion_tallies, w->asked,       w->part_asked, w->parts,        w->fresh,
-                   w->candidates,     w->pushes,      w->strained,   w->part_strained, w->servo_sums};
+                   w->candidates,     w->pushes,      w->strained,   w->part_strained, w->servo_sums, w->wear_events};
     for (size_t i = 0; i < sizeof all / sizeof *all; i++)
         free(all[i]);
     free(w);
@@ -431,6 +435,8 @@ static void step_part(void *user, int which)
     double t1 = dem_clock();
     if (w->walls.servo)
         dem_servo_gather(w, begin, end);
+    if (w->walls.rub)
+        dem_wear_rub(w, begin, end, kick);
     if (w->features.soft)
         dem_soft_pairs(w, begin, end, kick, part);
     else
@@ -509,6 +515,8 @@ static dem_status step_once(dem_world *w, dem_error *error)
     join_asked(w);
     if (w->walls.servo)
         dem_servo_move(w);
+    if (w->walls.wear)
+        DEM_TRY(dem_wear_settle(w, error));
     set_time(w);
     if (w->bonds)
         DEM_TRY(dem_bonds_settle(w, error));

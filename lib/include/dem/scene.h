@@ -267,6 +267,23 @@ typedef struct dem_servo_def {
     uint32_t partner;            ///< 1 + the wall that goes as fast the other way, both by the mean; 0: none
 } dem_servo_def;
 
+typedef enum dem_wear_law {
+    DEM_WEAR_NONE,
+    DEM_WEAR_FINNIE,   ///< by the impacts of bodies (1960)
+    DEM_WEAR_ARCHARD,  ///< by sliding under a force (1953)
+} dem_wear_law;
+
+/// What bodies take off a wall; see lib/sim/wear.h. The wall keeps its form.
+typedef struct dem_wear_def {
+    dem_wear_law law;
+    double constant;     ///< K of Finnie, normal over tangential force [-]
+    double pressure;     ///< p of Finnie, at which the wall flows [Pa]
+    double psi;          ///< of Finnie: length of the cut over its depth [-]
+    double roughness;    ///< of Finnie: share of the grains that cut [-]
+    double coefficient;  ///< of Archard [-]
+    double hardness;     ///< of Archard [Pa]
+} dem_wear_def;
+
 /// A rigid wall. A box is six planes. Geometry as it stands at time 0.
 typedef struct dem_wall_def {
     const char *name;
@@ -292,6 +309,7 @@ typedef struct dem_wall_def {
     dem_wall_table table;  ///< comes on top, and is not stopped
     dem_vec3 axis;         ///< unit, that oscillations and table turn about; along `spin` where that is not 0
     dem_servo_def servo;   ///< comes on top, too
+    dem_wear_def wear;     ///< not of planes and cylinders without an end
 } dem_wall_def;
 
 typedef enum dem_leaving { DEM_LEAVING_ERROR, DEM_LEAVING_IGNORE } dem_leaving;

@@ -92,6 +92,10 @@ typedef struct dem_wall_view {
     dem_vec3 force;   ///< of the bodies on the wall [N]
     dem_vec3 moment;  ///< about the wall's `through` [N m]
     size_t contacts;
+    double pressure;     ///< with which a servo wall pushes over its area [Pa]; NAN: no servo, or no area
+    double worn;         ///< volume taken off so far [m^3]
+    const double *wear;  ///< of that, by triangle of the mesh as it was given, or of the whole wall [m^3]; NULL: none
+    size_t wear_count;
 } dem_wall_view;
 
 /// What was found in a region that the scene measures. Pressure is positive.
