@@ -152,6 +152,14 @@ dem_status dem_unit(const char *name, dem_dimension dimension, double *value, de
     return find_unit(name, strlen(name), dimension, value, error);
 }
 
+dem_dimension dem_dimension_of(const char *name)
+{
+    for (int i = 0; name && i < UNIT_COUNT; i++)
+        if (units[i].si == 1 && strcmp(units[i].name, name) == 0)
+            return units[i].dimension;
+    return DEM_DIMENSION_NONE;
+}
+
 dem_status dem_quantity(const char *text, dem_dimension dimension, double *value, dem_error *error)
 {
     const char *end = text + strlen(text), *p = text;

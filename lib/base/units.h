@@ -34,6 +34,9 @@ const char *dem_dimension_example(dem_dimension dimension);
 /// The SI value of a unit's name ("mm" -> 1e-3).
 dem_status dem_unit(const char *name, dem_dimension dimension, double *value, dem_error *error);
 
+/// The dimension of an SI unit's name ("N/m"); a pure number for NULL and what is not known.
+dem_dimension dem_dimension_of(const char *name);
+
 /// A length in the unit that reads best: factor to multiply metres with, and its name.
 const char *dem_length_unit(double length, double *factor);
 

@@ -48,6 +48,11 @@ static void put_kernel(dem_buffer *out, const dem_world *w)
     dem_buffer_print(out, "kernel: %s (%s)", w->instance->name, set);
     dem_buffer_text(out,
                     w->instance->any ? ", which asks for each feature as it goes\n" : ", made for these features\n");
+    if (w->laws.plugin.table) {
+        const dem_law_spec *spec = w->laws.plugin.table->spec;
+        dem_buffer_print(out, "law: %s, version %u, of a plug-in with %u numbers; it remembers %u of each contact\n",
+                         spec->name, spec->version, spec->parameter_count, 3u * spec->vectors + spec->numbers);
+    }
     dem_buffer_text(out, "features:\n");
     bool some = false;
 #define FEATURE(name, about)                                                                                           \

@@ -49,7 +49,8 @@ void dem_views_release(dem_views *v)
 static bool evaluate(dem_world *w, const dem_contacts *contacts, size_t segment, int form)
 {
     const dem_segment *s = &contacts->segments[segment];
-    const dem_contact_instance *any = &w->kernels->instances[w->kernels->instance_count - 1];
+    size_t instances;
+    const dem_contact_instance *any = world_instances(w, &instances) + (instances - 1);
     dem_rows rows = world_rows(w);
     dem_tally scratch = {0};
     while (w->views.record_capacity < s->end - s->begin)

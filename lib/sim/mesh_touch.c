@@ -166,8 +166,8 @@ static void put_geometry(const dem_contact_columns *c, size_t at, dem_vec3 norma
 }
 
 // springs go to the slots of the contacts that continue theirs
-static void hand_over(const dem_contact_columns *c, const dem_segment *s, dem_mesh_touches *t, dem_mesh_touch *touch,
-                      const dem_mesh_contact *contacts, int count, double reach)
+static void hand_over(const dem_contact_columns *c, const dem_contact_extras *extras, const dem_segment *s,
+                      dem_mesh_touches *t, dem_mesh_touch *touch, const dem_mesh_contact *contacts, int count, double reach)
 {
     int from[DEM_MESH_CONTACTS];
     dem_contact_history old[DEM_MESH_CONTACTS], none = {0};
@@ -177,6 +177,13 @@ static void hand_over(const dem_contact_columns *c, const dem_segment *s, dem_me
     for (uint32_t k = 0; k < touch->slot_count; k++) {
         bool goes_on = (int)k < count && from[k] >= 0;
         dem_history_put(c, segment_place(s, touch->slot + k), goes_on ? &old[from[k]] : &none);
+    }
+    for (int e = 0; e < extras->count; e++) {
+        double *column = extras->column[e], number[DEM_MESH_CONTACTS];
+        for (uint32_t k = 0; k < touch->slot_count; k++)
+            number[k] = column[segment_place(s, touch->slot + k)];
+        for (uint32_t k = 0; k < touch->slot_count; k++)
+            column[segment_place(s, touch->slot + k)] = (int)k < count && from[k] >= 0 ? number[from[k]] : 0;
     }
     for (int k = 0; k < count; k++)
         t->last[touch->slot + (uint32_t)k] = contacts[k];
@@ -193,7 +200,8 @@ static int find_contacts(const dem_wall *wall, const dem_mesh_touches *t, const 
                                   contacts, (int)touch->slot_count);
 }
 
-static void measure_touch(dem_world *w, const dem_segment *s, dem_mesh_touches *t, dem_mesh_touch *touch)
+static void measure_touch(dem_world *w, const dem_contact_extras *extras, const dem_segment *s, dem_mesh_touches *t,
+                          dem_mesh_touch *touch)
 {
     const dem_contact_columns *c = &w->wall_contacts[DEM_FORM_MESH].columns;
     const dem_wall *wall = &w->walls.items[touch->wall];
@@ -203,7 +211,7 @@ static void measure_touch(dem_world *w, const dem_segment *s, dem_mesh_touches *
     if (count || touch->last_count) {
         double overlap = count ? larger(ball.radius - contacts[0].distance, 0) : 0;
         double moved = body_stride(&w->bodies, touch->a, w->last_step) + w->sweep_speed * w->last_step;
-        hand_over(c, s, t, touch, contacts, count, moved + 0.1 * sqrt(ball.radius * overlap));
+        hand_over(c, extras, s, t, touch, contacts, count, moved + 0.1 * sqrt(ball.radius * overlap));
     }
     dem_vec3 x = body_position(&w->bodies, touch->a);
     for (uint32_t k = 0; k < touch->slot_count; k++) {
@@ -219,7 +227,7 @@ static void measure_touch(dem_world *w, const dem_segment *s, dem_mesh_touches *
 
 // A body's balls at one wall, from touch k on: where none touched in the last step and one does now, it has struck the
 // wall. Returns the first touch behind them.
-static size_t measure_body(dem_world *w, size_t segment, size_t k)
+static size_t measure_body(dem_world *w, const dem_contact_extras *extras, size_t segment, size_t k)
 {
     dem_mesh_touches *t = &w->mesh_touches[segment];
     const dem_segment *s = &w->wall_contacts[DEM_FORM_MESH].segments[segment];
@@ -232,7 +240,7 @@ static size_t measure_body(dem_world *w, size_t segment, size_t k)
         double radius = w->templates.spheres[touch->sphere][3] * body_scale(&w->bodies, row);
         for (uint32_t i = 0; i < touch->last_count; i++)
             before |= t->last[touch->slot + i].distance < radius;
-        measure_touch(w, s, t, touch);
+        measure_touch(w, extras, s, t, touch);
         if (touch->last_count && radius - t->last[touch->slot].distance > most) {
             deepest = &t->last[touch->slot];
             most = radius - deepest->distance;
@@ -245,12 +253,13 @@ static size_t measure_body(dem_world *w, size_t segment, size_t k)
 
 void dem_mesh_touch_measure(dem_world *w, size_t begin, size_t end)
 {
+    dem_contact_extras extras = dem_extras_of(&w->wall_contacts[DEM_FORM_MESH].columns);
     for (size_t i = begin; i < end; i++) {
         dem_mesh_touches *t = &w->mesh_touches[i];
         for (size_t k = 0; k < t->count && w->walls.wear;)
-            k = measure_body(w, i, k);
+            k = measure_body(w, &extras, i, k);
         for (size_t k = 0; k < t->count && !w->walls.wear; k++)
-            measure_touch(w, &w->wall_contacts[DEM_FORM_MESH].segments[i], t, &t->items[k]);
+            measure_touch(w, &extras, &w->wall_contacts[DEM_FORM_MESH].segments[i], t, &t->items[k]);
     }
 }
 

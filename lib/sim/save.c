@@ -79,6 +79,12 @@ static uint64_t hash_constants(const dem_world *w)
         h = hash_bytes(h, numbers, sizeof numbers);
     }
     h = hash_bytes(h, w->laws.rows, w->laws.count * LAW_SLOTS * sizeof(double));
+    if (w->laws.plugin.table) {
+        const dem_law_spec *spec = w->laws.plugin.table->spec;
+        h = hash_bytes(h, spec->name, strlen(spec->name));
+        h = hash_bytes(h, &spec->version, sizeof spec->version);
+        h = hash_bytes(h, w->laws.parameters, w->laws.count * DEM_LAW_PARAMETERS * sizeof(double));
+    }
     h = hash_bytes(h, w->laws.table, w->laws.material_count * w->laws.material_count * sizeof *w->laws.table);
     for (size_t i = 0; i < w->walls.count; i++) {
         const dem_wall *wall = &w->walls.items[i];
@@ -416,10 +422,11 @@ uint64_t dem_world_hash(const dem_world *w)
         for (size_t i = 0; contacts->segments && i < w->segment_count; i++) {
             const dem_segment *s = &contacts->segments[i];
             const dem_contact_columns *c = &contacts->columns;
-            const double *columns[] = {c->spring[0], c->spring[1], c->spring[2], c->bond};
-            for (int k = 0; k < 4; k++)
-                if (columns[k])
-                    hash = hash_bytes(hash, columns[k] + s->begin, (s->end - s->begin) * sizeof(double));
+            for (int k = 0; c->spring[0] && k < 3; k++)
+                hash = hash_bytes(hash, c->spring[k] + s->begin, (s->end - s->begin) * sizeof(double));
+            dem_contact_extras extras = dem_extras_of(c);
+            for (int k = 0; k < extras.count; k++)
+                hash = hash_bytes(hash, extras.column[k] + s->begin, (s->end - s->begin) * sizeof(double));
         }
     }
     for (size_t i = 0; w->bonds && i < w->bonds->count; i++) {

@@ -90,6 +90,13 @@ static void put_materials(dem_json_writer *w, const dem_scene *scene)
 static void put_normal(dem_json_writer *w, const dem_pair_law *law)
 {
     dem_json_open_object(w, "normal");
+    if (law->normal == DEM_NORMAL_PLUGIN) {
+        dem_json_put_string(w, "plugin", text_of(law->plugin));
+        for (size_t i = 0; i < law->parameter_count; i++)
+            dem_json_put_number(w, law->parameters[i].name, law->parameters[i].value);
+        dem_json_close(w, '}');
+        return;
+    }
     static const char *const names[] = {
         [DEM_NORMAL_LINEAR] = "linear",
         [DEM_NORMAL_HERTZ] = "hertz",

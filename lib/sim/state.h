@@ -277,8 +277,14 @@ static inline double body_stride(const dem_bodies *b, size_t row, double step)
 
 static inline dem_rows world_rows(const dem_world *w)
 {
-    return (dem_rows){w->bodies.bodies, w->bodies.momentum, w->bodies.inertia, &w->templates.spheres[0][0],
-                      w->shifts,        w->laws.rows,       w->walls.rows};
+    return (dem_rows){.bodies = w->bodies.bodies,
+                      .momentum = w->bodies.momentum,
+                      .inertia = w->bodies.inertia,
+                      .spheres = &w->templates.spheres[0][0],
+                      .shifts = w->shifts,
+                      .laws = w->laws.rows,
+                      .parameters = w->laws.parameters,
+                      .walls = w->walls.rows};
 }
 
 static inline uint32_t body_hold(const dem_bodies *b, size_t row)
@@ -290,6 +296,14 @@ static inline double body_mass(const dem_world *w, size_t row)
 {
     const dem_template *t = &w->templates.items[w->bodies.shape[row]];
     return t->mass * template_bulk(t, body_scale(&w->bodies, row));
+}
+
+/// Kernels of contacts: those of the machine, or of the scene's plug-in; the last is for any features.
+static inline const dem_contact_instance *world_instances(const dem_world *w, size_t *count)
+{
+    const dem_law_table *user = w->laws.plugin.table;
+    *count = user ? user->instance_count : w->kernels->instance_count;
+    return user ? user->instances : w->kernels->instances;
 }
 
 #endif

@@ -125,8 +125,16 @@ static dem_status set_reach(dem_world *w, dem_error *error)
         most = larger(most, t->radius_max * body_scale(&w->bodies, row));
         least = smaller(least, t->radius_min * body_scale(&w->bodies, row));
     }
-    for (size_t i = 0; (w->features.jkr || w->features.bonded) && most > 0 && i < w->laws.count; i++) {
+    const dem_features *f = &w->features;
+    for (size_t i = 0; (f->jkr || f->bonded || f->user_reaches) && most > 0 && i < w->laws.count; i++) {
         const double *law = w->laws.rows + LAW_SLOTS * i;
+        double user = fmax(law_user_reach(&w->laws, i, most), law_user_reach(&w->laws, i, least / 2));
+        if (!(user <= least))
+            return dem_fail(error, DEM_BAD_INPUT,
+                            "the law of the plug-in would hold until surfaces are %.3g m apart, more than the smallest "
+                            "radius, %.3g m; check its numbers",
+                            user, least);
+        w->reach = larger(w->reach, user);
         double bond = law_bond_reach(law, least * least / (least + most));
         if (!(bond <= least))
             return dem_fail(error, DEM_BAD_INPUT,
@@ -168,10 +176,12 @@ static dem_status make_state(dem_world *w, const dem_scene *scene, dem_error *er
     DEM_TRY(dem_place_bodies(w, scene, &defs, &count, error));
     set_holds(w, defs, count);
     set_features(w, defs, count);
-    dem_features still = w->features;
+    size_t instances;
+    const dem_contact_instance *kernels = world_instances(w, &instances);
+    dem_features walls = w->features.user ? features_for_plugin(w->features) : w->features, still = walls;
     still.moving = still.reaction = false;
-    w->instance = dem_kernels_instance(w->kernels, still);
-    w->wall_instance = dem_kernels_instance(w->kernels, w->features);
+    w->instance = dem_kernels_instance(kernels, still);
+    w->wall_instance = dem_kernels_instance(kernels, walls);
     dem_status status = dem_bodies_create(w, defs, count, error);
     if (w->bodies.count < THREADS_FROM)
         w->threads = 1;

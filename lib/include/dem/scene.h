@@ -23,6 +23,7 @@ typedef enum dem_normal_law {
     DEM_NORMAL_HERTZ,   ///< F = 4/3 E* sqrt(R*) overlap^1.5
     DEM_NORMAL_JKR,     ///< soft adhesive surfaces, which hold on beyond the touch (Johnson, Kendall & Roberts 1971)
     DEM_NORMAL_DMT,     ///< the same less 2 pi w R*, the pull of stiff dry adhesive surfaces (Derjaguin et al. 1975)
+    DEM_NORMAL_PLUGIN,  ///< a law of the user's (dem/law.h), which says all forces
 } dem_normal_law;
 
 typedef enum dem_damping_law {
@@ -76,11 +77,20 @@ typedef enum dem_bonded {
     DEM_BONDED_AT_TOUCH,  ///< these, and all that come to touch later
 } dem_bonded;
 
+/// A number of a law of the user's.
+typedef struct dem_law_value {
+    const char *name;
+    double value;
+} dem_law_value;
+
 /// The law between two materials.
 typedef struct dem_pair_law {
     uint32_t materials[2];
     dem_effective_mass effective_mass;
     dem_normal_law normal;
+    const char *plugin;               ///< resolved path of the plug-in
+    const dem_law_value *parameters;  ///< those of its law's numbers that are given
+    size_t parameter_count;
     double stiffness;  ///< of the linear law [N/m]; 0: k = E A / L from the materials
     dem_damping_law damping;
     double restitution;   ///< 0..1 [-]
