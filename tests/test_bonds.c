@@ -561,16 +561,18 @@ static void what_cannot_be_bonded_is_refused(void **state)
     (void)state;
     dem_world *w;
     dem_error error;
-    for (int i = 0; i < 3; i++) {
+    for (int i = 0; i < 4; i++) {
         dem_bond_def bond = beam_bond();
         model *m = beam(1, v3(1, 0, 0), &bond);
         if (i == 0)
             m->bodies[1].position.x = 0;
+        else if (i == 3)
+            bond.radius_multiplier = 1e90;
         else if (i == 1)
             bond.gap = 1;
         else
             bond.young = NAN;
-        static const char *const says[] = {"no length; move them apart", "lower it", "needs \"young\""};
+        static const char *const says[] = {"no length; move them apart", "lower it", "needs \"young\"", "too stiff"};
         check(dem_world_create(NULL, &m->scene, &w, &error) == DEM_BAD_INPUT && !w);
         check(strstr(error.text, says[i]));
         model_free(m);

@@ -9,6 +9,7 @@
 #include "sim/measure.h"
 
 static const double LEAST_LENGTH = 1e-3;    // of the smaller radius, between centres
+static const double LARGEST = 1e100;        // stiffness [N/m], [N m/rad], and of dashpots
 static const double OVERLAP_WARNED = 0.05;  // of the smaller radius
 
 // ---- definitions
@@ -262,6 +263,14 @@ static dem_status bond_spheres(dem_world *w, const dem_pair *pair, dem_vec3 shif
         return dem_fail_memory(error);
     dem_bond *bond = &b->items[b->count];
     put_bond(w, pair, shift, s, which, bond);
+    double most = 0;
+    for (int k = 0; k < BOND_WAYS; k++)
+        most = larger(most, larger(bond->stiffness[k], bond->damping[k]));
+    if (!(most < LARGEST))
+        return dem_fail(error, DEM_BAD_INPUT,
+                        "bonds \"%.60s\" are too stiff to be computed; lower \"young\", \"radius_multiplier\" or "
+                        "\"damping\"",
+                        b->defs[which].name);
     // a contact that goes takes its energy along
     if (w->steps && b->defs[which].contact == DEM_BOND_INSTEAD)
         bond->broken = dem_contact_elastic(w, bond->a, bond->b, bond->sphere_a, bond->sphere_b);
