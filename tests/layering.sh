@@ -6,7 +6,7 @@ BEGIN {
     n = split("base 0 math 1 geom 2 ray 2 mesh 3 clump 4 sim 5 out 6 study 7", a, " ")
     for (i = 1; i < n; i += 2) floor[a[i]] = a[i + 1]
     pub["dem/base.h"] = 0; pub["dem/mesh.h"] = 3; pub["dem/clump.h"] = 4; pub["dem/scene.h"] = 5
-    pub["dem/world.h"] = 5; pub["dem/picture.h"] = 6; pub["dem/export.h"] = 6; pub["dem/dem.h"] = 7
+    pub["dem/world.h"] = 5; pub["dem/picture.h"] = 6; pub["dem/export.h"] = 6; pub["dem/law.h"] = 5; pub["dem/dem.h"] = 7
     only["assimp"] = "lib/mesh/import_assimp.c"; only["embree"] = "lib/ray/ray.c"
     only["jansson"] = "lib/base/json.c"; only["png"] = "lib/out/png.c"; only["nettle"] = "lib/base/hash.c"
     only["CGAL"] = "lib/mesh/cgal"

@@ -14,7 +14,7 @@ static void check_edges(dem_mesh *mesh, double a, double b, double c, double tol
     double edges[3];
     dem_error error;
     dem_vec3 axes[3];
-    check_ok(dem_mesh_min_box(mesh, edges, axes, &error), error);
+    check_ok(dem_mesh_min_box(mesh, 1, edges, axes, &error), error);
     // along its axes the mesh is as long as the edges say
     check_vec(v3_cross(axes[0], axes[1]), axes[2], 1e-12);
     for (int k = 0; k < 3; k++) {
@@ -77,7 +77,7 @@ static void scale_and_place_do_not_matter(void **state)
     dem_mesh grain = shape_grain(10);
     double want[3];
     dem_error error;
-    check_ok(dem_mesh_min_box(&grain, want, NULL, &error), error);
+    check_ok(dem_mesh_min_box(&grain, 1, want, NULL, &error), error);
     dem_mesh_free(&grain);
     for (int k = -9; k <= 9; k += 9) {
         double scale = pow(10, k);
@@ -90,13 +90,30 @@ static void scale_and_place_do_not_matter(void **state)
     }
 }
 
+static void the_box_is_the_same_for_any_number_of_threads(void **state)
+{
+    (void)state;
+    dem_mesh grain = shape_grain(12);
+    double first[3];
+    dem_vec3 first_axes[3];
+    dem_error error;
+    check_ok(dem_mesh_min_box(&grain, 1, first, first_axes, &error), error);
+    for (int threads = 2; threads <= 4; threads++) {
+        double edges[3];
+        dem_vec3 axes[3];
+        check_ok(dem_mesh_min_box(&grain, threads, edges, axes, &error), error);
+        check(memcmp(edges, first, sizeof edges) == 0 && memcmp(axes, first_axes, sizeof axes) == 0);
+    }
+    dem_mesh_free(&grain);
+}
+
 static void a_line_has_no_box(void **state)
 {
     (void)state;
     dem_mesh mesh = shape_copy((dem_vec3[]){{0, 0, 0}, {1, 1, 1}, {2, 2, 2}}, 3, (uint32_t[]){0, 1, 2}, 1);
     double edges[3];
     dem_error error;
-    check(dem_mesh_min_box(&mesh, edges, NULL, &error) == DEM_BAD_INPUT);
+    check(dem_mesh_min_box(&mesh, 1, edges, NULL, &error) == DEM_BAD_INPUT);
     dem_mesh_free(&mesh);
 }
 
@@ -107,6 +124,7 @@ int main(void)
         cmocka_unit_test(a_regular_tetrahedron_fits_into_a_cube),
         cmocka_unit_test(an_ellipsoid_has_its_three_axes),
         cmocka_unit_test(scale_and_place_do_not_matter),
+        cmocka_unit_test(the_box_is_the_same_for_any_number_of_threads),
         cmocka_unit_test(a_line_has_no_box),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

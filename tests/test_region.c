@@ -100,6 +100,9 @@ static void a_line_across_a_periodic_side_is_where_its_images_are(void **state)
     for (int i = 0; i < 2; i++)
         in += (i ? -1 : 1) * DEM_PI * h[i] * h[i] * (3 * R - h[i]) / 3;
     check_near(v[0].solid_volume, in, 5e-3 * 4 * DEM_PI / 3 * R * R * R);
+    // at the other end that part, and a cap of the second ball
+    double caps = DEM_PI * 0.006 * 0.006 * (3 * R - 0.006) / 3 + DEM_PI * 0.0045 * 0.0045 * (3 * R - 0.0045) / 3;
+    check_near(v[1].solid_volume, caps, 1e-2 * 4 * DEM_PI / 3 * R * R * R);
     dem_world_destroy(w);
     model_free(m);
 }
@@ -222,6 +225,39 @@ static void a_box_has_the_stress_of_its_walls(void **state)
         check_close(v[0].coordination, dem_world_figures(w)->coordination, 1e-12);
         dem_world_destroy(w);
     }
+}
+
+// what a bond pulls with is a stress below 0
+static void a_bond_bears_stress_too(void **state)
+{
+    (void)state;
+    model *m = model_new();
+    uint32_t ball = model_sphere(m, R);
+    dem_bond_def bond = dem_bond_defaults();
+    bond.young = 1e7;
+    bond.gap = 1e-6;
+    m->scene.bonds = &bond;
+    m->scene.bond_count = 1;
+    m->materials[0].density = 1e12;  // too heavy to be turned
+    model_body(m, ball, v3(0, 0, 0))->hold = DEM_HOLD_VELOCITY;
+    dem_body_def *b = model_body(m, ball, v3(2 * R, 0, 0));
+    b->hold = DEM_HOLD_VELOCITY;
+    b->velocity = v3(1e-2, 0, 5e-3);
+    const dem_measure_def all[] = {{.region = DEM_REGION_BOX, .low = {-1, -1, -1}, .high = {1, 1, 1}},
+                                   {.region = DEM_REGION_BOX, .low = {-1, -1, -1}, .high = {R, 1, 1}}};
+    set_measures(m, all, 2);
+    dem_world *w = model_world(m, 1);
+    run_steps(w, 1000);
+    const dem_measure_view *v = views_of(w);
+    size_t count;
+    const dem_bond_view *bonds = dem_world_bonds(w, &count);
+    dem_vec3 x = dem_world_bodies(w).position[1], f = bonds[0].force;
+    check(count == 1 && f.x > 1);
+    check_sym(v[0].stress, (dem_sym3){-f.x * x.x / 8, 0, -f.z * x.z / 8, 0, -(f.x * x.z + f.z * x.x) / 16, 0},
+              1e-12 * f.x);
+    check_close(v[1].stress.xx, -f.x * R / (1 + R) / 4, 1e-12);
+    dem_world_destroy(w);
+    model_free(m);
 }
 
 // bodies that fly: m v v over the volume, about their mean
@@ -392,6 +428,7 @@ int main(void)
         cmocka_unit_test(a_line_across_a_periodic_side_is_where_its_images_are),
         cmocka_unit_test(a_column_bears_its_weight),
         cmocka_unit_test(a_box_has_the_stress_of_its_walls),
+        cmocka_unit_test(a_bond_bears_stress_too),
         cmocka_unit_test(motion_is_a_stress_where_it_is_asked_for),
         cmocka_unit_test(a_grain_across_the_border_counts_by_its_part),
         cmocka_unit_test(among_discs_a_region_is_an_area),

@@ -271,6 +271,42 @@ static void a_fill_has_its_values(void **state)
 
 // ---- walls
 
+static void inlets_have_their_values(void **state)
+{
+    (void)state;
+    dem_scene s;
+    dem_error error;
+    char *text = NULL;
+    const char *source =
+        "{'schema': 'dem-scene/1', 'domain': {'leaving': 'delete'}, 'materials': {'a': {'density': 2000}},"
+        " 'contacts': [{'between': ['a', 'a'], 'normal': {'law': 'linear', 'stiffness': 1}}],"
+        " 'shapes': {'b': {'sphere': {'radius': '1 mm'}, 'material': 'a'}},"
+        " 'inlets': {'top': {'box': [[0, 0, 0], [1, 1, 1]], 'mix': [{'shape': 'b'}], 'mass_rate': '36 kg/h',"
+        "   'velocity': [0, 0, -1], 'velocity_spread': '1 cm/s', 'spin': [1, 2, 3], 'spin_spread': 4, 'start': '1 s',"
+        "   'stop': 2, 'count': 50, 'gap': '1 mm', 'seed': 7},"
+        "  'jet': {'sphere': {'centre': [1, 2, 3], 'radius': '2 mm'}, 'rate': 10, 'velocity': [1, 0, 0],"
+        "   'mix': [{'shape': 'b', 'size': {'law': 'uniform', 'min': '1 mm', 'max': '2 mm'}}], 'share_by': 'mass'}}}";
+    for (int i = 0; i < 2; i++) {
+        // as given, and as it is written
+        char *json = text ? text : strdup(source);
+        check_ok(scene_read(json, NULL, NULL, &s, &error), error);
+        check(s.domain.leaving == DEM_LEAVING_DELETE);
+        assert_int_equal(s.inlet_count, 2);
+        const dem_inlet_def *a = &s.inlets[0], *b = &s.inlets[1];
+        assert_string_equal(a->name, "top");
+        check(a->kind == DEM_INLET_BOX && a->by_mass && a->high.z == 1 && a->mix_count == 1 && a->seed == 7);
+        check_near(a->rate, 0.01, 1e-15);
+        check(a->velocity.z == -1 && a->velocity_spread == 0.01 && a->spin.z == 3 && a->spin_spread == 4);
+        check(a->start == 1 && a->stop == 2 && a->count == 50 && a->gap == 0.001);
+        check(b->kind == DEM_INLET_SPHERE && !b->by_mass && b->rate == 10 && b->radius == 0.002 && b->centre.y == 2);
+        check(b->share_by_mass && b->mix[0].size.law == DEM_SIZE_UNIFORM && b->stop == INFINITY && b->seed == 1);
+        free(json);
+        if (i == 0)
+            check_ok(dem_scene_resolved(&s, &text, &error), error);
+        dem_scene_release(&s);
+    }
+}
+
 static void walls_have_their_values(void **state)
 {
     (void)state;
@@ -354,9 +390,14 @@ static void a_file_that_is_not_there_is_named_at_its_place(void **state)
 // ---- the published schema
 
 // the part of a schema that lists properties: behind a reference, a list, a map, or one of several forms
+static const dem_json *definitions;
+
 static const dem_json *listing(const dem_json *schema)
 {
     const dem_json *list = dem_json_member(schema, "properties"), *any = dem_json_member(schema, "oneOf");
+    const char *reference = dem_json_string(dem_json_member(schema, "$ref"));
+    if (reference)
+        return listing(dem_json_member(definitions, reference + strlen("#/$defs/")));
     if (list)
         return list;
     for (size_t i = 0; i < dem_json_length(any) && !list; i++)
@@ -408,6 +449,7 @@ static void the_schema_lists_what_is_read(void **state)
     dem_error error;
     check_ok(dem_file_read(DEM_SOURCE_DIR "/lib/sim/dem-scene-1.schema.json", &text, &error), error);
     check_ok(dem_json_parse(text.data, text.size, "schema", &schema, &error), error);
+    definitions = dem_json_member(schema, "$defs");
     check(compare_keys(schema, &dem_scene_fields, "scene") > 100);
     dem_json_release(schema);
     dem_buffer_release(&text);
@@ -427,6 +469,7 @@ int main(void)
         cmocka_unit_test(a_body_has_its_values),
         cmocka_unit_test(bodies_of_any_kind_can_be_held),
         cmocka_unit_test(a_fill_has_its_values),
+        cmocka_unit_test(inlets_have_their_values),
         cmocka_unit_test(walls_have_their_values),
         cmocka_unit_test(the_sample_of_the_design_reads_with_its_files),
         cmocka_unit_test(a_file_that_is_not_there_is_named_at_its_place),

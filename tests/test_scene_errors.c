@@ -166,8 +166,8 @@ static void wrong_laws_are_refused(void **state)
         {LAW("'law': 'dmt'", ""), 4, "~the law dmt needs 'work_of_adhesion'"},
         {LAW("'law': 'dmt', 'work_of_adhesion': 1, 'stiffness': 1", ""), 4, "~the law dmt has no 'stiffness'"},
         {LAW("'law': 'dmt', 'work_of_adhesion': -1", ""), 4, "~must be at least 0"},
-        {LAW("'law': 'plugin'", ""), 4, "contacts[0].normal.law: 'plugin' is not built yet (column 19); leave it out"},
-        {LAW("'plugin': 'law.so'", ""), 4, "~this is not built yet"},
+        {LAW("'law': 'plugin'", ""), 4, "~unknown law 'plugin'"},
+        {LAW("'plugin': 'law.so'", ""), 4, "~files are not read here"},
         {LAW("'stiffness': 1, 'work_of_adhesion': 1", ""), 4, "~only the laws jkr and dmt have 'work_of_adhesion'"},
         {LAW("'stiffness': 1, 'restitution': 0.5, 'damping_rate': 1", ""), 4,
          "~has both 'restitution' and 'damping_rate'"},
@@ -370,7 +370,7 @@ static void wrong_walls_are_refused(void **state)
 #define PLANE "'plane': {'point': [0, 0, 0], 'normal': [0, 0, 1]}"
     static const refusal cases[] = {
         {IN_HEAD("'walls': {'w': {" PLANE "}}"), 7, "walls.w: 'material' is missing (column 16); add it"},
-        {WALL("'motion': {}"), 7, "~needs one of 'plane', 'box', 'cylinder' and 'mesh'"},
+        {WALL("'motion': {}"), 7, "~needs one of 'plane', 'box', 'cylinder', 'cone', 'sphere' and 'mesh'"},
         {WALL(PLANE ", 'box': {'min': [0, 0, 0], 'max': [1, 1, 1]}"), 7, "~has more than one of"},
         {WALL(PLANE ", 'unit': 'mm'"), 7, "~'unit' is the unit of a mesh file"},
         {WALL("'mesh': 'x.stl', 'unit': 'kg'"), 7, "~files are not read here"},
@@ -380,10 +380,24 @@ static void wrong_walls_are_refused(void **state)
         {WALL("'cylinder': {'point': [0, 0, 0], 'axis': [0, 0, 1], 'radius': -1}"), 7, "~must be above 0"},
         {WALL("'cylinder': {'point': [0, 0, 0], 'axis': [0, 0, 1], 'radius': 1, 'side': 'in'}"), 7,
          "~use one of: inside, outside"},
-        {WALL("'cone': {}"), 7, "~this is not built yet"},
-        {WALL("'sphere': {}"), 7, "~is not built yet"},
+        {WALL("'cone': {}"), 7, "~'axis' is missing"},
+        {WALL("'cone': {'axis': [0, 0, 1], 'apex': [0, 0, 0]}"), 7, "~needs 'apex' and 'angle', or"},
+        {WALL("'cone': {'axis': [0, 0, 1], 'apex': [0, 0, 0], 'angle': 1, 'length': 1}"), 7, "~give exactly these"},
+        {WALL("'cone': {'axis': [0, 0, 1], 'apex': [0, 0, 0], 'angle': '90 deg'}"), 7, "~must be above 0"},
+        {WALL("'cone': {'axis': [0, 0, 1], 'point': [0, 0, 0], 'radii': [1, 1], 'length': 0}"), 7, "~has no surface"},
+        {WALL("'cone': {'axis': [0, 0, 1], 'point': [0, 0, 0], 'radii': [1, 2], 'length': 1, 'side': 'inside'}"), 7,
+         "~solid on both sides"},
+        {WALL("'sphere': {}"), 7, "~'centre' is missing"},
+        {WALL("'plane': {'point': [0, 0, 0], 'normal': [0, 0, 1], 'size': [1, 2], 'radius': 1}"), 7, "~has both"},
+        {WALL("'plane': {'point': [0, 0, 0], 'normal': [0, 0, 1], 'along': [1, 0, 0]}"), 7, "~first side"},
+        {WALL("'plane': {'point': [0, 0, 0], 'normal': [0, 0, 1], 'size': [1, 2], 'along': [0, 0, 1]}"), 7,
+         "~direction of the normal"},
         {WALL(PLANE ", 'servo': {}"), 7, "~'max_velocity' is missing"},
-        {WALL(PLANE ", 'wear': {}"), 7, "~is not built yet"},
+        {WALL(PLANE ", 'wear': {}"), 7, "~'law' is missing"},
+        {WALL(PLANE ", 'wear': {'law': 'finnie'}"), 7, "~'pressure' is missing"},
+        {WALL(PLANE ", 'wear': {'law': 'archard', 'hardness': 1}"), 7, "~needs 'coefficient' and 'hardness'"},
+        {WALL(PLANE ", 'wear': {'law': 'archard', 'psi': 1}"), 7, "~has keys of the other law"},
+        {WALL(PLANE ", 'wear': {'law': 'finnie', 'pressure': 1}"), 7, "~needs a wall with ends"},
         {WALL(PLANE ", 'motion': {'oscillate': {}}"), 7, "~'frequency' is missing"},
         {WALL(PLANE ", 'motion': {'table': 'x.csv'}"), 7, "~files are not read here"},
         {WALL(PLANE ", 'motion': {'translate': {}}"), 7, "~'velocity' is missing"},
@@ -392,6 +406,30 @@ static void wrong_walls_are_refused(void **state)
                  "},\n'w': {'material': 'rock', 'box': {'min': [0, 0, 0],"
                  " 'max': [1, 1, 1]}}}"),
          8, "~there is a wall 'w.x-' already"},
+    };
+    CHECK_REFUSALS(cases);
+}
+
+#define GRAIN                                                                                                          \
+    "'materials': {'a': {'density': 1}}, 'contacts': [{'between': ['a', 'a'], 'normal': {'law': 'linear', "            \
+    "'stiffness': 1}}], 'shapes': {'b': {'sphere': {'radius': 1}, 'material': 'a'}},\n"
+#define INLET "'inlets': {'a': {'mix': [{'shape': 'b'}], "
+
+static void inlets_that_cannot_be_are_refused(void **state)
+{
+    (void)state;
+    static const refusal cases[] = {
+        {S "'inlets': [1]}", 2, "~needs an object of inlets by name"},
+        {S "'inlets': {'a': {}}}", 2, "~'mix' is missing"},
+        {S GRAIN INLET "'rate': 1}}}", 3, "~needs one of"},
+        {S GRAIN INLET "'rate': 1, 'sphere': {'centre': [0, 0, 0], 'radius': 1}, 'box': [[0, 0, 0], [1, 1, 1]]}}}", 3, "~has both of"},
+        {S GRAIN INLET "'rate': 1, 'sphere': {'centre': [0, 0, 0], 'radius': 1}}}}", 3, "~never get out of the sphere"},
+        {S GRAIN INLET "'box': [[0, 0, 0], [1, 1, 1]]}}}", 3, "~needs one of"},
+        {S GRAIN INLET "'box': [[0, 0, 0], [1, 1, 1]], 'rate': 1, 'mass_rate': 1}}}", 3, "~has both of"},
+        {S GRAIN INLET "'box': [[0, 0, 0], [1, 1, 1]], 'rate': 0}}}", 3, "~must be above 0"},
+        {S GRAIN INLET "'box': [[0, 0, 0], [1, 1, 0]], 'rate': 1}}}", 3, "~below the second along z"},
+        {S GRAIN INLET "'box': [[0, 0, 0], [1, 1, 1]], 'rate': 1, 'start': 2, 'stop': 1}}}", 3, "~must be before"},
+        {S GRAIN INLET "'box': [[0, 0, 0], [1, 1, 1]], 'rate': 1, 'velocity_spread': -1}}}", 3, "~must be at least 0"},
     };
     CHECK_REFUSALS(cases);
 }
@@ -421,10 +459,6 @@ static void what_is_not_built_is_never_ignored(void **state)
 {
     (void)state;
     static const refusal cases[] = {
-        {S "'domain': {'leaving': 'delete'}}", 2,
-         "domain.leaving: 'delete' is not built yet (column 23); leave it out"},
-        {S "'inlets': {'a': {}}}", 2, "~this is not built yet"},
-        {S "'inlets': [1]}", 2, "~is not built yet"},
         {S "'damping': {'drag': {}}}", 2, "~'density' is missing"},
         {S "'damping': {'drag': {'density': 1, 'viscosity': -1}}}", 2, "~must be at least 0"},
         {S "'damping': {'drag': {'density': 1, 'viscosity': '1 Pa'}}}", 2, "~viscosity"},
@@ -469,6 +503,7 @@ int main(void)
         cmocka_unit_test(wrong_shapes_are_refused),
         cmocka_unit_test(wrong_bodies_are_refused),
         cmocka_unit_test(wrong_walls_are_refused),
+        cmocka_unit_test(inlets_that_cannot_be_are_refused),
         cmocka_unit_test(wrong_bonds_are_refused),
         cmocka_unit_test(what_is_not_built_is_never_ignored),
         cmocka_unit_test(text_that_is_no_json_is_refused_by_its_line),

@@ -26,7 +26,7 @@ static void make_pair(pair *p)
                 .spin = {{0, 9, 0}, {0, 0, 0}},
                 .orientation = {{1, 0, 0, 0}, {0.6, 0, 0.8, 0}}};
     p->view = (dem_body_view){2,           p->shape, p->scale, p->mass,     p->position,    p->orientation,
-                              p->velocity, p->spin,  p->spin,  p->velocity, p->coordination};
+                              p->velocity, p->spin,  p->spin,  p->velocity, p->coordination, NULL};
 }
 
 // seen along y, x to the right

@@ -11,7 +11,7 @@ static dem_series *opened(const char *directory, size_t walls, double resume)
 {
     dem_series *series;
     dem_error error;
-    check_ok(dem_series_open(&(dem_series_def){directory, VIEW_WALL_DEFS, walls, NULL, 0}, resume, &series, &error), error);
+    check_ok(dem_series_open(&(dem_series_def){directory, false, VIEW_WALL_DEFS, walls, NULL, 0, false}, resume, &series, &error), error);
     return series;
 }
 
@@ -27,7 +27,7 @@ static dem_figures figures_at(int i)
                          .overlap_ratio = 1e-3 * random_uniform(&r),
                          .centre = random_vector(&r),
                          .highest = 1.0 / 3,
-                         .energy = {random_uniform(&r), 1, -2, 3, 4, 5, 6, 7, 8, 9, NAN}};
+                         .energy = {random_uniform(&r), 1, -2, 3, 4, 5, 6, 7, 8, 9, 10, NAN}};
 }
 
 static dem_status write_row(dem_series *series, int i, dem_error *error)
@@ -55,7 +55,8 @@ static void columns_are_named_with_their_units(void **state)
                         "local_J,drag_J,work_J,energy_error,contacts,wall_contacts,coordination,overlap_ratio,centre_x_m,centre_y_m,"
                         "centre_z_m,highest_m,floor_fx_N,floor_fy_N,floor_fz_N,floor_mx_Nm,floor_my_Nm,floor_mz_Nm,"
                         "drum_fx_N,drum_fy_N,drum_fz_N,drum_mx_Nm,drum_my_Nm,drum_mz_Nm,lid__moving_fx_N,"
-                        "lid__moving_fy_N,lid__moving_fz_N,lid__moving_mx_Nm,lid__moving_my_Nm,lid__moving_mz_Nm\n");
+                        "lid__moving_fy_N,lid__moving_fz_N,lid__moving_mx_Nm,lid__moving_my_Nm,lid__moving_mz_Nm,"
+                        "lid__moving_x_m,lid__moving_y_m,lid__moving_z_m\n");
     dem_buffer_release(&text);
 }
 
@@ -168,7 +169,7 @@ static void a_table_of_another_scene_is_refused_and_kept(void **state)
     write_rows(series, 0, 3);
     dem_series_close(series);
     dem_buffer before = content(in_folder("other/series.csv"));
-    check(dem_series_open(&(dem_series_def){in_folder("other"), VIEW_WALL_DEFS, 1, NULL, 0}, 1, &series, &error) == DEM_BAD_INPUT);
+    check(dem_series_open(&(dem_series_def){in_folder("other"), false, VIEW_WALL_DEFS, 1, NULL, 0, false}, 1, &series, &error) == DEM_BAD_INPUT);
     check(!series && strstr(error.text, "other columns") && strchr(error.text, ';'));
     dem_buffer after = content(in_folder("other/series.csv"));
     assert_string_equal(before.data, after.data);

@@ -41,7 +41,7 @@ static inline dem_body_view view_bodies(made_view *v, uint64_t seed)
         v->orientation[i] = quat_unit((dem_quat){random_normal(&r), axis.x, axis.y, axis.z});
     }
     return (dem_body_view){VIEW_BODIES, v->shape, v->scale, v->mass,   v->position,    v->orientation,
-                           v->velocity, v->spin,  v->force, v->moment, v->coordination};
+                           v->velocity, v->spin,  v->force, v->moment, v->coordination, NULL};
 }
 
 /// A sphere, two spheres, and a grain with a surface (sample_clump). Destroy each.

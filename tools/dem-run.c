@@ -101,6 +101,8 @@ static dem_run_report report_of(const cli_session *session, const dem_scene *sce
                             .threads = r->threads,
                             .passes = r->passes,
                             .pass_count = r->pass_count,
+                            .inlets = r->inlets,
+                            .inlet_count = r->inlet_count,
                             .warnings = (const char *const *)session->warnings.items,
                             .warning_count = session->warnings.count};
 }

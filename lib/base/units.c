@@ -91,6 +91,10 @@ static const unit units[] = {
     {"uN", DEM_DIMENSION_FORCE, 1e-6},
     {"µN", DEM_DIMENSION_FORCE, 1e-6},
     {"nN", DEM_DIMENSION_FORCE, 1e-9},
+    {"kg/s", DEM_DIMENSION_MASS_RATE, 1},
+    {"g/s", DEM_DIMENSION_MASS_RATE, 1e-3},
+    {"kg/h", DEM_DIMENSION_MASS_RATE, 1 / 3600.0},
+    {"t/h", DEM_DIMENSION_MASS_RATE, 1 / 3.6},
     {"s/m", DEM_DIMENSION_SLOWNESS, 1},
     {"s/mm", DEM_DIMENSION_SLOWNESS, 1e3},
 };
@@ -114,6 +118,7 @@ static const struct {
     [DEM_DIMENSION_RATE] = {"a rate", "100 1/s"},
     [DEM_DIMENSION_VISCOSITY] = {"a viscosity", "1 mPa s"},
     [DEM_DIMENSION_FORCE] = {"a force", "5 kN"},
+    [DEM_DIMENSION_MASS_RATE] = {"a mass by time", "2 kg/s"},
     [DEM_DIMENSION_SLOWNESS] = {"an inverse velocity", "500 s/m"},
     [DEM_DIMENSION_NONE] = {"a number", "0.5"},
 };
@@ -150,6 +155,14 @@ static dem_status find_unit(const char *name, size_t length, dem_dimension dimen
 dem_status dem_unit(const char *name, dem_dimension dimension, double *value, dem_error *error)
 {
     return find_unit(name, strlen(name), dimension, value, error);
+}
+
+dem_dimension dem_dimension_of(const char *name)
+{
+    for (int i = 0; name && i < UNIT_COUNT; i++)
+        if (units[i].si == 1 && strcmp(units[i].name, name) == 0)
+            return units[i].dimension;
+    return DEM_DIMENSION_NONE;
 }
 
 dem_status dem_quantity(const char *text, dem_dimension dimension, double *value, dem_error *error)

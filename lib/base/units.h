@@ -21,6 +21,7 @@ typedef enum dem_dimension {
     DEM_DIMENSION_VISCOSITY,        ///< [Pa s]
     DEM_DIMENSION_FORCE,            ///< [N]
     DEM_DIMENSION_SLOWNESS,         ///< [s/m]
+    DEM_DIMENSION_MASS_RATE,        ///< [kg/s]
     DEM_DIMENSION_NONE,             ///< a pure number [-]
 } dem_dimension;
 
@@ -33,6 +34,9 @@ const char *dem_dimension_example(dem_dimension dimension);
 
 /// The SI value of a unit's name ("mm" -> 1e-3).
 dem_status dem_unit(const char *name, dem_dimension dimension, double *value, dem_error *error);
+
+/// The dimension of an SI unit's name ("N/m"); a pure number for NULL and what is not known.
+dem_dimension dem_dimension_of(const char *name);
 
 /// A length in the unit that reads best: factor to multiply metres with, and its name.
 const char *dem_length_unit(double length, double *factor);

@@ -2,7 +2,7 @@
 
 #include <stdlib.h>
 
-enum { SHRINKS = 12 };
+enum { SHRINKS = 12, POINT_SHRINKS = 6, SPARSE_POINTS = 1024 };
 // Near the middle of a round grain all of its surface is as near: what is found so far has to do then.
 enum { MOST_LEAVES = 500 };
 
@@ -32,9 +32,8 @@ static double shrink(double r, dem_vec3 p, dem_vec3 n, dem_vec3 a, dem_vec3 b, d
 
 // Shrinking ball (Ma, Bae & Choi 2012) in a single traversal: the balls are nested, so what one of them does not
 // reach none of the later ones does.
-double dem_medial_radius(const dem_tree *tree, dem_vec3 p, dem_vec3 n)
+static double shrink_in_tree(const dem_tree *tree, dem_vec3 p, dem_vec3 n, double r)
 {
-    double r = largest_radius;
     uint32_t stack[DEM_BOX_TREE_STACK];
     int top = 0, leaves = 0;
     stack[top++] = 0;
@@ -59,6 +58,50 @@ double dem_medial_radius(const dem_tree *tree, dem_vec3 p, dem_vec3 n)
         }
     }
     return r;
+}
+
+double dem_medial_radius(const dem_tree *tree, dem_vec3 p, dem_vec3 n)
+{
+    return shrink_in_tree(tree, p, n, largest_radius);
+}
+
+/// Some of the surface samples, padded to full lanes.
+typedef struct sparse {
+    float *x, *y, *z;
+    size_t count;
+} sparse;
+
+// Shrinks to the sparse points that lie deepest inside, one after the other: what is left for the tree is a ball hardly
+// too large, which meets few of its boxes.
+static double shrink_to_points(const sparse *points, dem_vec3 p, dem_vec3 n)
+{
+    const float px = (float)p.x, py = (float)p.y, pz = (float)p.z, nx = (float)n.x, ny = (float)n.y, nz = (float)n.z;
+    double r = largest_radius;
+    for (int i = 0; i < POINT_SHRINKS; i++) {
+        // depth d of a point s with e = p - s: |s - centre|^2 = r^2 - d, where d = 2 r n.e - e.e
+        float two_r = (float)(2 * r), least = (float)(r * r * (1 - (1 - tolerance) * (1 - tolerance)));
+        float deepest[DEM_LANES], touching[DEM_LANES];
+        for (int l = 0; l < DEM_LANES; l++) {
+            deepest[l] = least;
+            touching[l] = (float)r;
+        }
+        for (size_t k = 0; k < points->count; k += DEM_LANES)
+            for (int l = 0; l < DEM_LANES; l++) {
+                float ex = px - points->x[k + (size_t)l], ey = py - points->y[k + (size_t)l];
+                float ez = pz - points->z[k + (size_t)l], e2 = ex * ex + ey * ey + ez * ez;
+                float low = ex * nx + ey * ny + ez * nz, depth = two_r * low - e2;
+                touching[l] = depth > deepest[l] ? e2 / (2 * low) : touching[l];
+                deepest[l] = depth > deepest[l] ? depth : deepest[l];
+            }
+        int at = 0;
+        for (int l = 1; l < DEM_LANES; l++)
+            at = deepest[l] > deepest[at] ? l : at;
+        if (!(deepest[at] > least))
+            break;
+        r = fmin(r, (double)touching[at]);
+    }
+    // the points are rounded
+    return fmin(largest_radius, r * (1 + tolerance));
 }
 
 typedef struct touching {
@@ -127,6 +170,26 @@ static dem_status sort_by_block(const touching *points, size_t count, size_t blo
     return DEM_OK;
 }
 
+// evenly out of all blocks
+static bool take_sparse(const dem_samples *samples, sparse *few)
+{
+    size_t all = samples->surface_blocks * DEM_BLOCK, step = all / SPARSE_POINTS + 1;
+    few->count = all / step / DEM_LANES * DEM_LANES;
+    few->x = dem_alloc(3 * few->count, sizeof *few->x);
+    if (!few->x)
+        return false;
+    few->y = few->x + few->count;
+    few->z = few->y + few->count;
+    for (size_t k = 0; k < few->count; k++) {
+        const dem_sample_block *block = &samples->blocks[k * step / DEM_BLOCK];
+        size_t l = k * step % DEM_BLOCK;
+        few->x[k] = block->x[l];
+        few->y[k] = block->y[l];
+        few->z[k] = block->z[l];
+    }
+    return true;
+}
+
 dem_status dem_candidates_build(const dem_pack_grain *grain, const dem_samples *samples, size_t count, int threads,
                                 dem_candidates *candidates, dem_error *error)
 {
@@ -135,14 +198,21 @@ dem_status dem_candidates_build(const dem_pack_grain *grain, const dem_samples *
     touching *points = dem_alloc_zero(count, sizeof *points);
     if (!points)
         return dem_fail_memory(error);
+    sparse few;
+    if (!take_sparse(samples, &few)) {
+        free(points);
+        return dem_fail_memory(error);
+    }
     dem_surface_spread(shell_corners, shell, shell->triangle_count, shell_area(shell), count, keep_touching, points);
 #pragma omp parallel for num_threads(threads) schedule(dynamic, 64)
     for (size_t i = 0; i < count; i++) {
-        points[i].radius = dem_medial_radius(&grain->tree, points[i].point, points[i].normal);
+        double r = shrink_to_points(&few, points[i].point, points[i].normal);
+        points[i].radius = shrink_in_tree(&grain->tree, points[i].point, points[i].normal, r);
         points[i].block = nearest_block(samples, points[i].point);
     }
     dem_status status = sort_by_block(points, count, samples->surface_blocks, candidates, error);
     free(points);
+    free(few.x);
     if (status != DEM_OK)
         dem_candidates_release(candidates);
     return status;

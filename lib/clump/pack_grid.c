@@ -31,7 +31,7 @@ typedef struct lattice {
 static dem_status set_box(dem_classic *c, lattice *l, dem_error *error)
 {
     const dem_pack_grain *grain = c->grain;
-    DEM_TRY(dem_mesh_min_box(grain->mesh, l->edges, l->axes, error));
+    DEM_TRY(dem_mesh_min_box(grain->mesh, c->threads, l->edges, l->axes, error));
     for (int k = 0; k < 3; k++) {
         l->edges[k] /= grain->size;
         l->axes[k] = dem_pack_grain_enter(grain, v3_along(grain->centre, grain->size, l->axes[k]));

@@ -26,10 +26,10 @@
 
 #define SHAKE 1e-7  // [d_eq]
 
-static dem_status size_measure(const dem_mesh *mesh, double size, dem_shape *shape, dem_error *error)
+static dem_status size_measure(const dem_mesh *mesh, double size, int threads, dem_shape *shape, dem_error *error)
 {
     double edges[3];
-    DEM_TRY(dem_mesh_min_box(mesh, edges, NULL, error));
+    DEM_TRY(dem_mesh_min_box(mesh, threads, edges, NULL, error));
     shape->longest = edges[0] * size;
     shape->intermediate = edges[1] * size;
     shape->shortest = edges[2] * size;
@@ -76,7 +76,7 @@ dem_status dem_shape_measure(const dem_ctx *ctx, const dem_mesh *mesh, dem_shape
         return dem_fail_memory(error);
     for (size_t i = 0; i < mesh->vertex_count; i++)
         unit.vertices[i] = v3_scale(v3_sub(mesh->vertices[i], solid.centre), 1 / size);
-    dem_status status = size_measure(&unit, size, shape, error);
+    dem_status status = size_measure(&unit, size, dem_threads(ctx), shape, error);
     if (status == DEM_OK)
         status = convexity_measure(ctx, &unit, shape, error);
     if (status == DEM_OK)

@@ -118,9 +118,9 @@ double dem_tree_closest(const dem_tree *tree, dem_vec3 p, double limit, dem_vec3
 
 bool dem_tree_within(const dem_tree *tree, dem_vec3 p, double distance)
 {
-    nearest best = {.distance2 = INFINITY};
+    nearest best = {.distance2 = nextafter(distance * distance, INFINITY)};
     search_nearest(tree, p, distance * distance, &best);
-    return best.distance2 <= distance * distance;
+    return best.found;
 }
 
 // does the ray p + t d, t >= 0, meet the box? `inverse` is 1/d by component (infinities allowed)

@@ -19,9 +19,14 @@ enum {
     POLISHED = 4,
     MAX_TURNS = 60,
     MAX_JOINS = 25,
-    EXTREME_POINTS = 2 * EXTREME_DIRECTIONS + 6 * (MAX_JOINS + 1) * POLISHED,
+    SHARED_JOINS = 6,
+    TILTS = 27,
+    NO_TILT = 13,
+    EXTREME_POINTS = 2 * EXTREME_DIRECTIONS + 6 * (MAX_JOINS + 1 + POLISHED * SHARED_JOINS),
     FILTER = 8
 };
+
+static const double SMALL_TILT = 0.03;
 
 typedef struct frame {
     dem_vec3 axis[3];
@@ -161,8 +166,8 @@ static double extent(const point_set *set, dem_vec3 axis)
     double low = INFINITY, high = -INFINITY;
     for (size_t i = 0; i < set->count; i++) {
         double d = v3_dot(set->points[i], axis);
-        low = fmin(low, d);
-        high = fmax(high, d);
+        low = d < low ? d : low;
+        high = d > high ? d : high;
     }
     return high - low;
 }
@@ -224,10 +229,13 @@ static frame tilted(const point_set *set, const frame *f, const int p[3], double
 // settles, tries tilts of ever smaller angles, and settles again
 static void tilt(const point_set *set, frame *f, double angle)
 {
+    int idle = 0;
     settle(set, f);
-    for (; angle > 1e-4; angle /= 3) {
+    for (; angle > 1e-4 && idle < 2; angle /= 3) {
         frame best = *f;
-        for (int i = 0; i < 27; i++) {
+        for (int i = 0; i < TILTS; i++) {
+            if (i == NO_TILT)
+                continue;
             frame g = tilted(set, f, (int[]){i % 3 - 1, i / 3 % 3 - 1, i / 9 - 1}, angle);
             for (int k = 0; k < 3; k++) {
                 frame h = g;
@@ -236,8 +244,13 @@ static void tilt(const point_set *set, frame *f, double angle)
                 g = rolled(g);
             }
         }
-        if (best.volume < f->volume)
+        // where two small angles in turn gain nothing smaller ones do not either
+        if (best.volume < f->volume) {
             settle(set, &best);
+            idle = 0;
+        } else if (angle < SMALL_TILT) {
+            idle++;
+        }
         *f = best;
     }
 }
@@ -342,30 +355,45 @@ static bool join(point_set *few, const point_set *all, frame *f)
     return grown;
 }
 
-static frame smallest_frame(point_set *few, const point_set *all)
+// a frame found on few points made the best one near it for all
+static void polish(const point_set *start, const point_set *all, frame *f)
 {
-    frame best[KEPT], least = {.volume = INFINITY};
-    size_t count = search(few, best);
+    dem_vec3 points[EXTREME_POINTS];
+    flat_point flat[EXTREME_POINTS], hull[2 * EXTREME_POINTS];
+    point_set few = {points, start->count, flat, hull};
+    memcpy(points, start->points, start->count * sizeof *points);
+    tilt(&few, f, 0.2);
+    // most of those that were missing come in while it only turns
+    int joins = 0;
+    for (; joins < MAX_JOINS && join(&few, all, f); joins++)
+        settle(&few, f);
+    for (tilt(&few, f, 0.01); joins < MAX_JOINS && join(&few, all, f); joins++)
+        tilt(&few, f, 0.01);
+    join(&few, all, f);
+}
+
+static frame smallest_frame(point_set *few, const point_set *all, int threads)
+{
+    frame best[KEPT], polished[POLISHED], least = {.volume = INFINITY};
+    size_t count = search(few, best), taken = 0;
     for (size_t i = 0; i < count; i++)
         settle(few, &best[i]);
-    for (size_t i = 0; i < POLISHED && i < count; i++) {
+    for (; taken < POLISHED && taken < count; taken++) {
         size_t pick = 0;
         for (size_t k = 1; k < count; k++)
             if (best[k].volume < best[pick].volume)
                 pick = k;
-        frame f = best[pick];
+        polished[taken] = best[pick];
         best[pick].volume = INFINITY;
-        tilt(few, &f, 0.2);
-        // most of those that were missing come in while it only turns
-        int joins = 0;
-        for (; joins < MAX_JOINS && join(few, all, &f); joins++)
-            settle(few, &f);
-        for (tilt(few, &f, 0.01); joins < MAX_JOINS && join(few, all, &f); joins++)
-            tilt(few, &f, 0.01);
-        join(few, all, &f);
-        if (f.volume < least.volume)
-            least = f;
+        for (int k = 0; k < SHARED_JOINS && join(few, all, &polished[taken]); k++)
+            settle(few, &polished[taken]);
     }
+#pragma omp parallel for num_threads(threads) schedule(dynamic, 1) if (threads > 1)
+    for (size_t i = 0; i < taken; i++)
+        polish(few, all, &polished[i]);
+    for (size_t i = 0; i < taken; i++)
+        if (polished[i].volume < least.volume)
+            least = polished[i];
     return least;
 }
 
@@ -383,7 +411,7 @@ static size_t centred_points(const dem_mesh *mesh, dem_vec3 *points, unsigned ch
     return count;
 }
 
-dem_status dem_mesh_min_box(const dem_mesh *mesh, double edges[3], dem_vec3 axes[3], dem_error *error)
+dem_status dem_mesh_min_box(const dem_mesh *mesh, int threads, double edges[3], dem_vec3 axes[3], dem_error *error)
 {
     dem_status status = DEM_OK;
     dem_vec3 *points = dem_alloc(mesh->vertex_count, sizeof *points), extreme[EXTREME_POINTS];
@@ -395,7 +423,7 @@ dem_status dem_mesh_min_box(const dem_mesh *mesh, double edges[3], dem_vec3 axes
     }
     point_set all = {.points = points, .count = centred_points(mesh, points, used)};
     point_set few = {extreme, extreme_points(&all, extreme), flat, hull};
-    frame f = smallest_frame(&few, &all);
+    frame f = smallest_frame(&few, &all, threads);
     for (int k = 0; k < 3; k++)
         edges[k] = f.edge[k];
     for (int k = 0; k < 2; k++)

@@ -14,6 +14,7 @@
 #include "out/pvd.h"
 #include "out/vtp.h"
 #include "out/wall_mesh.h"
+#include "sim/wall_motion.h"
 
 static const char INDEX[] = "run.pvd", WALLS[] = "walls.pvd", STATIC[] = "walls_static.vtp";
 
@@ -24,6 +25,12 @@ struct dem_frames {
     bool moving, still;  // there are walls that do
     dem_pvd index, walls;
 };
+
+// walls that are written with every frame
+static bool changes(const dem_wall_def *wall)
+{
+    return dem_wall_moves(wall) || wall->wear.law != DEM_WEAR_NONE;
+}
 
 // ---- beginning
 
@@ -102,7 +109,7 @@ static dem_status begin(dem_frames *f, dem_error *error)
         return dem_fail_memory(error);
     measure_shapes(f);
     for (size_t i = 0; i < f->def.wall_count; i++)
-        *(dem_wall_moves(&f->def.walls[i]) ? &f->moving : &f->still) = true;
+        *(changes(&f->def.walls[i]) ? &f->moving : &f->still) = true;
     DEM_TRY(make_folder(f, "frames", error));
     DEM_TRY(make_folder(f, "shapes", error));
     if (f->moving)
@@ -149,17 +156,36 @@ void dem_frames_close(dem_frames *f)
 
 // ---- bodies
 
-static dem_status write_bodies(dem_file_queue *queue, const char *path, double time, const dem_body_view *b,
-                               dem_error *error)
+// how far servos have brought their walls, which no function of time tells
+static dem_vec3 *shifts_of(const dem_frames *f, double time, const dem_wall_view *walls)
 {
+    dem_vec3 *shifts = dem_alloc_zero(f->def.wall_count, sizeof *shifts);
+    for (size_t i = 0; shifts && walls && i < f->def.wall_count; i++)
+        if (f->def.walls[i].servo.on) {
+            dem_wall_motion motion = dem_wall_motion_of(&f->def.walls[i]);
+            dem_wall_moment now = dem_wall_motion_at(&motion, time);
+            dem_quat turn;
+            shifts[i] = v3_sub(walls[i].position, dem_wall_pose(&motion, &now, v3(0, 0, 0), &turn));
+        }
+    return shifts;
+}
+
+static dem_status write_bodies(const dem_frames *f, const char *path, double time, const dem_body_view *b,
+                               const dem_wall_view *walls, dem_error *error)
+{
+    bool servo = false;
+    for (size_t i = 0; i < f->def.wall_count; i++)
+        servo |= f->def.walls[i].servo.on;
+    dem_vec3 *shifts = shifts_of(f, time, walls);
+    const dem_vtp_array field = {DEM_WALL_SHIFTS, DEM_VTP_FLOAT64, 3 * (int)f->def.wall_count, shifts};
     float *turns = dem_alloc(b->count, 4 * sizeof *turns);
     uint32_t *ids = dem_alloc(b->count, sizeof *ids);
-    dem_status status = turns && ids ? DEM_OK : dem_fail_memory(error);
+    dem_status status = turns && ids && shifts ? DEM_OK : dem_fail_memory(error);
     for (size_t i = 0; i < b->count && status == DEM_OK; i++) {
         dem_quat q = b->orientation[i];
         float *turn = turns + 4 * i;
         turn[0] = (float)q.w, turn[1] = (float)q.x, turn[2] = (float)q.y, turn[3] = (float)q.z;
-        ids[i] = (uint32_t)i;
+        ids[i] = b->id ? b->id[i] : (uint32_t)i;
     }
     const dem_vtp_array arrays[] = {
         {"orientation", DEM_VTP_FLOAT32, 4, turns},    {"scale", DEM_VTP_FLOAT64, 1, b->scale},
@@ -167,8 +193,10 @@ static dem_status write_bodies(dem_file_queue *queue, const char *path, double t
         {"velocity", DEM_VTP_FLOAT64, 3, b->velocity}, {"angular_velocity", DEM_VTP_FLOAT64, 3, b->spin},
         {"mass", DEM_VTP_FLOAT64, 1, b->mass},         {"coordination", DEM_VTP_UINT32, 1, b->coordination}};
     if (status == DEM_OK)
-        status = dem_vtp_queue(queue, path,
+        status = dem_vtp_queue(f->def.queue, path,
                                &(dem_vtp){.time = time,
+                                          .fields = &field,
+                                          .field_count = servo,
                                           .points = b->position,
                                           .point_count = b->count,
                                           .point_arrays = arrays,
@@ -178,6 +206,7 @@ static dem_status write_bodies(dem_file_queue *queue, const char *path, double t
                                error);
     free(turns);
     free(ids);
+    free(shifts);
     return status;
 }
 
@@ -197,11 +226,30 @@ static dem_box bodies_box(const dem_frames *f, const dem_body_view *b)
 typedef struct wall_cells {
     dem_mesh mesh;     // of all walls
     int32_t *numbers;  // of the wall, for every triangle
-    size_t vertex_room, triangle_room, number_room;
+    double *volume, *depth;  // worn off [m^3], [m]
+    size_t vertex_room, triangle_room, number_room, volume_room, depth_room;
 } wall_cells;
 
-static bool append_wall(wall_cells *all, const dem_mesh *wall, int32_t number)
+static double area_of(const dem_mesh *mesh, size_t triangle)
 {
+    const uint32_t *t = &mesh->triangles[3 * triangle];
+    const dem_vec3 *v = mesh->vertices;
+    return v3_norm(v3_cross(v3_sub(v[t[1]], v[t[0]]), v3_sub(v[t[2]], v[t[0]]))) / 2;
+}
+
+// of a smooth wall, evenly over all of it
+static double volume_worn(const dem_mesh *wall, const dem_wall_view *view, size_t triangle, double area)
+{
+    if (view->wear_count == wall->triangle_count)
+        return view->wear[triangle];
+    return area > 0 ? view->worn * area_of(wall, triangle) / area : 0;
+}
+
+static bool append_wall(wall_cells *all, const dem_mesh *wall, int32_t number, const dem_wall_view *view)
+{
+    double whole = 0;
+    for (size_t t = 0; view && view->wear && t < wall->triangle_count; t++)
+        whole += area_of(wall, t);
     dem_mesh *m = &all->mesh;
     size_t base = m->vertex_count;
     for (size_t i = 0; i < wall->vertex_count; i++) {
@@ -211,8 +259,13 @@ static bool append_wall(wall_cells *all, const dem_mesh *wall, int32_t number)
     }
     for (size_t t = 0; t < wall->triangle_count; t++) {
         if (!dem_grow(&m->triangles, &all->triangle_room, m->triangle_count, 3 * sizeof *m->triangles) ||
-            !dem_grow(&all->numbers, &all->number_room, m->triangle_count, sizeof *all->numbers))
+            !dem_grow(&all->numbers, &all->number_room, m->triangle_count, sizeof *all->numbers) ||
+            !dem_grow(&all->volume, &all->volume_room, m->triangle_count, sizeof *all->volume) ||
+            !dem_grow(&all->depth, &all->depth_room, m->triangle_count, sizeof *all->depth))
             return false;
+        double area = area_of(wall, t), volume = whole > 0 ? volume_worn(wall, view, t, whole) : 0;
+        all->volume[m->triangle_count] = volume;
+        all->depth[m->triangle_count] = area > 0 ? volume / area : 0;
         for (size_t k = 3 * t; k < 3 * t + 3; k++)
             m->triangles[3 * m->triangle_count + k - 3 * t] = (uint32_t)(base + wall->triangles[k]);
         all->numbers[m->triangle_count++] = number;
@@ -227,10 +280,10 @@ static dem_status gather_walls(const dem_frames *f, bool moving, const dem_wall_
     dem_status status = DEM_OK;
     for (size_t i = 0; i < f->def.wall_count && status == DEM_OK; i++) {
         dem_mesh mesh = {0};
-        if (dem_wall_moves(&f->def.walls[i]) != moving)
+        if (changes(&f->def.walls[i]) != moving)
             continue;
         status = dem_wall_mesh(&f->def.walls[i], poses ? &poses[i] : NULL, box, &mesh, error);
-        if (status == DEM_OK && !append_wall(all, &mesh, (int32_t)i))
+        if (status == DEM_OK && !append_wall(all, &mesh, (int32_t)i, poses ? &poses[i] : NULL))
             status = dem_fail_memory(error);
         dem_mesh_free(&mesh);
     }
@@ -243,7 +296,12 @@ static dem_status write_wall_file(const dem_frames *f, const char *name, double 
     wall_cells all = {0};
     char *path = dem_path_join(f->directory, "%s", name);
     dem_status status = path ? gather_walls(f, moving, poses, box, &all, error) : dem_fail_memory(error);
-    const dem_vtp_array array = {"wall", DEM_VTP_INT32, 1, all.numbers};
+    bool worn = false;
+    for (size_t i = 0; moving && i < f->def.wall_count; i++)
+        worn |= f->def.walls[i].wear.law != DEM_WEAR_NONE;
+    const dem_vtp_array arrays[] = {{"wall", DEM_VTP_INT32, 1, all.numbers},
+                                    {"wear_volume", DEM_VTP_FLOAT64, 1, all.volume},
+                                    {"wear_depth", DEM_VTP_FLOAT64, 1, all.depth}};
     if (status == DEM_OK)
         status = dem_vtp_queue(f->def.queue, path,
                                &(dem_vtp){.time = moving ? time : NAN,
@@ -251,11 +309,13 @@ static dem_status write_wall_file(const dem_frames *f, const char *name, double 
                                           .point_count = all.mesh.vertex_count,
                                           .triangles = all.mesh.triangles,
                                           .triangle_count = all.mesh.triangle_count,
-                                          .cell_arrays = &array,
-                                          .cell_array_count = 1},
+                                          .cell_arrays = arrays,
+                                          .cell_array_count = worn ? 3 : 1},
                                error);
     dem_mesh_free(&all.mesh);
     free(all.numbers);
+    free(all.volume);
+    free(all.depth);
     free(path);
     return status;
 }
@@ -282,7 +342,7 @@ dem_status dem_frames_write(dem_frames *f, double time, const dem_body_view *bod
     char name[32];
     snprintf(name, sizeof name, "frames/%06zu.vtp", f->index.count);
     char *path = dem_path_join(f->directory, "%s", name);
-    dem_status status = path ? write_bodies(f->def.queue, path, time, bodies, error) : dem_fail_memory(error);
+    dem_status status = path ? write_bodies(f, path, time, bodies, walls, error) : dem_fail_memory(error);
     if (status == DEM_OK)
         status = write_walls(f, time, bodies, walls, error);
     if (status == DEM_OK)

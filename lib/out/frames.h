@@ -4,7 +4,7 @@
 ///   frames/NNNNNN.vtp   a point per clump: position, orientation (w, x, y, z), scale, template, id, velocity, ...
 ///   shapes/NAME.vtp     a template's surface in the frame that `orientation` turns, to be used as a glyph
 ///   walls.pvd           the walls with their times: walls_static.vtp and, where some move, walls/NNNNNN.vtp; the cell
-///                       array `wall` counts as in the scene
+///                       array `wall` counts as in the scene; walls that wear have `wear_volume` and `wear_depth`
 ///
 /// Every file appears whole or not at all.
 #ifndef DEM_OUT_FRAMES_H
@@ -13,6 +13,9 @@
 #include "base/file_queue.h"
 #include "dem/scene.h"
 #include "dem/world.h"
+
+/// Field data of a frame: shifts of servo walls beside their motion, 3 a wall [m].
+#define DEM_WALL_SHIFTS "wall_shifts"
 
 /// What frames are made of; borrowed until dem_frames_close.
 typedef struct dem_frames_def {

@@ -13,10 +13,9 @@
 #include "out/pvd.h"
 #include "out/vtp.h"
 
-static const char INDEX[] = "contacts.pvd", PREFIX[] = "contacts_";
-
 struct dem_network {
     char *directory;
+    const char *name;  // of the index and of the files
     dem_domain_def domain;
     dem_pvd index;
 };
@@ -32,9 +31,10 @@ static dem_status remove_files(const dem_network *n, size_t first, dem_error *er
     DIR *listing = opendir(path);
     const struct dirent *entry;
     while (listing && (entry = readdir(listing))) {
-        const char *name = entry->d_name, *at = name + strlen(PREFIX);
+        size_t length = strlen(n->name);
+        const char *name = entry->d_name, *at = name + length + 1;
         long number;
-        if (strncmp(name, PREFIX, strlen(PREFIX)) != 0)
+        if (strncmp(name, n->name, length) != 0 || name[length] != '_')
             continue;
         const char *rest = dem_parse_long(at, name + strlen(name), &number);
         if (rest && rest - at >= 6 && strcmp(rest, ".vtp") == 0 && number >= 0 && (size_t)number >= first)
@@ -48,28 +48,31 @@ static dem_status remove_files(const dem_network *n, size_t first, dem_error *er
 
 static dem_status begin(dem_network *n, double resume, dem_error *error)
 {
+    char index_name[24];
+    snprintf(index_name, sizeof index_name, "%s.pvd", n->name);
     char *folder = n->directory ? dem_path_join(n->directory, "frames") : NULL;
     dem_status status = folder ? dem_folder_create(folder, error) : dem_fail_memory(error);
     free(folder);
     DEM_TRY(status);
     if (isnan(resume)) {
-        char *index = dem_path_join(n->directory, "%s", INDEX);
+        char *index = dem_path_join(n->directory, "%s", index_name);
         if (!index)
             return dem_fail_memory(error);
         unlink(index);
         free(index);
     }
-    DEM_TRY(dem_pvd_open(n->directory, INDEX, resume, &n->index, error));
+    DEM_TRY(dem_pvd_open(n->directory, index_name, resume, &n->index, error));
     return remove_files(n, n->index.count, error);
 }
 
-dem_status dem_network_open(const char *directory, const dem_domain_def *domain, double resume, dem_network **network,
-                            dem_error *error)
+dem_status dem_network_open(const char *directory, const char *name, const dem_domain_def *domain, double resume,
+                            dem_network **network, dem_error *error)
 {
     dem_network *n = *network = dem_alloc_zero(1, sizeof *n);
     if (!n)
         return dem_fail_memory(error);
     n->domain = *domain;
+    n->name = name;
     n->directory = strdup(directory);
     dem_status status = begin(n, resume, error);
     if (status != DEM_OK) {
@@ -114,6 +117,13 @@ static void release_columns(columns *c)
                    c->overlap, c->kind,  c->body, c->other,        c->wall};
     for (size_t i = 0; i < sizeof all / sizeof *all; i++)
         free(all[i]);
+}
+
+enum { FILE_BYTES = 40 };
+
+static void next_file(const dem_network *n, char name[static FILE_BYTES])
+{
+    snprintf(name, FILE_BYTES, "frames/%s_%06zu.vtp", n->name, n->index.count);
 }
 
 // of a body's images the one that is nearest to a point
@@ -170,9 +180,9 @@ static dem_status write_lines(const char *path, double time, const columns *c, s
 dem_status dem_network_write(dem_network *n, double time, const dem_body_view *bodies, const dem_contact *contacts,
                              size_t count, dem_error *error)
 {
-    char name[40];
+    char name[FILE_BYTES];
     columns c;
-    snprintf(name, sizeof name, "frames/%s%06zu.vtp", PREFIX, n->index.count);
+    next_file(n, name);
     char *path = dem_path_join(n->directory, "%s", name);
     dem_status status = make_columns(&c, count) && path ? DEM_OK : dem_fail_memory(error);
     for (size_t i = 0; i < count && status == DEM_OK; i++)
@@ -182,6 +192,107 @@ dem_status dem_network_write(dem_network *n, double time, const dem_body_view *b
     if (status == DEM_OK)
         status = dem_pvd_add(&n->index, time, name, NULL, error);
     release_columns(&c);
+    free(path);
+    return status;
+}
+
+// ---- bonds
+
+typedef struct bond_columns {
+    dem_vec3 *points, *force, *moment;
+    uint32_t *ends;
+    double *numbers[4];  // tensile and shear stress, their ratio to the strength, time of the breakage
+    int32_t *whole[4];   // state, body, other, which of the scene's bonds
+} bond_columns;
+
+static bool make_bond_columns(bond_columns *c, size_t n)
+{
+    *c = (bond_columns){.points = dem_alloc(2 * n, sizeof *c->points),
+                        .force = dem_alloc(n, sizeof *c->force),
+                        .moment = dem_alloc(n, sizeof *c->moment),
+                        .ends = dem_alloc(2 * n, sizeof *c->ends)};
+    bool good = c->points && c->force && c->moment && c->ends;
+    for (int k = 0; k < 4; k++) {
+        c->numbers[k] = dem_alloc(n, sizeof *c->numbers[k]);
+        c->whole[k] = dem_alloc(n, sizeof *c->whole[k]);
+        good = good && c->numbers[k] && c->whole[k];
+    }
+    return good;
+}
+
+static void release_bond_columns(bond_columns *c)
+{
+    free(c->points);
+    free(c->force);
+    free(c->moment);
+    free(c->ends);
+    for (int k = 0; k < 4; k++) {
+        free(c->numbers[k]);
+        free(c->whole[k]);
+    }
+}
+
+// a broken one stays a point where it broke
+static void set_bond(const dem_network *n, bond_columns *c, size_t i, const dem_body_view *bodies,
+                     const dem_bond_view *b)
+{
+    bool intact = b->state == DEM_BOND_INTACT;
+    dem_vec3 x = bodies->position[b->body];
+    c->points[2 * i] = intact ? x : b->point;
+    c->points[2 * i + 1] =
+        intact ? image_near(&n->domain, bodies->position[b->other], image_near(&n->domain, b->point, x)) : b->point;
+    c->ends[2 * i] = (uint32_t)(2 * i);
+    c->ends[2 * i + 1] = (uint32_t)(2 * i + 1);
+    c->force[i] = b->force;
+    c->moment[i] = b->moment;
+    c->numbers[0][i] = b->tensile_stress;
+    c->numbers[1][i] = b->shear_stress;
+    c->numbers[2][i] = b->stress_ratio;
+    c->numbers[3][i] = intact ? -1 : b->broken;
+    c->whole[0][i] = (int32_t)b->state;
+    c->whole[1][i] = (int32_t)b->body;
+    c->whole[2][i] = (int32_t)b->other;
+    c->whole[3][i] = (int32_t)b->def;
+}
+
+static dem_status write_bond_lines(const char *path, double time, const bond_columns *c, size_t count, dem_error *error)
+{
+    const dem_vtp_array arrays[] = {{"force", DEM_VTP_FLOAT64, 3, c->force},
+                                    {"moment", DEM_VTP_FLOAT64, 3, c->moment},
+                                    {"tensile_stress", DEM_VTP_FLOAT64, 1, c->numbers[0]},
+                                    {"shear_stress", DEM_VTP_FLOAT64, 1, c->numbers[1]},
+                                    {"stress_ratio", DEM_VTP_FLOAT64, 1, c->numbers[2]},
+                                    {"broken", DEM_VTP_FLOAT64, 1, c->numbers[3]},
+                                    {"state", DEM_VTP_INT32, 1, c->whole[0]},
+                                    {"body", DEM_VTP_INT32, 1, c->whole[1]},
+                                    {"other", DEM_VTP_INT32, 1, c->whole[2]},
+                                    {"bond", DEM_VTP_INT32, 1, c->whole[3]}};
+    return dem_vtp_write(path,
+                         &(dem_vtp){.time = time,
+                                    .points = c->points,
+                                    .point_count = 2 * count,
+                                    .lines = c->ends,
+                                    .line_count = count,
+                                    .cell_arrays = arrays,
+                                    .cell_array_count = sizeof arrays / sizeof *arrays},
+                         error);
+}
+
+dem_status dem_network_write_bonds(dem_network *n, double time, const dem_body_view *bodies, const dem_bond_view *bonds,
+                                   size_t count, dem_error *error)
+{
+    char name[FILE_BYTES];
+    bond_columns c;
+    next_file(n, name);
+    char *path = dem_path_join(n->directory, "%s", name);
+    dem_status status = make_bond_columns(&c, count) && path ? DEM_OK : dem_fail_memory(error);
+    for (size_t i = 0; i < count && status == DEM_OK; i++)
+        set_bond(n, &c, i, bodies, &bonds[i]);
+    if (status == DEM_OK)
+        status = write_bond_lines(path, time, &c, count, error);
+    if (status == DEM_OK)
+        status = dem_pvd_add(&n->index, time, name, NULL, error);
+    release_bond_columns(&c);
     free(path);
     return status;
 }

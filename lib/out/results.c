@@ -10,6 +10,7 @@
 #include "base/memory.h"
 #include "base/status.h"
 #include "math/quat.h"
+#include "out/frames.h"
 #include "sim/bodies_csv.h"
 #include "sim/place.h"
 #include "sim/scene.h"
@@ -30,7 +31,7 @@ static dem_status read_scene(const dem_ctx *ctx, const char *path, dem_results *
     dem_json_release(root);
     if (!scene)
         return dem_fail_at(error, DEM_BAD_INPUT, path, 0, "holds no scene; name the output directory of dem-run");
-    status = dem_scene_read_text(ctx, scene, strlen(scene), path, "/", (const char *[]){"bodies=[]", NULL}, &r->scene,
+    status = dem_scene_read_text(ctx, scene, strlen(scene), path, "/", (const char *[]){"bodies=[]", "bonds={}", NULL}, &r->scene,
                                  error);
     free(scene);
     return status;
@@ -64,7 +65,8 @@ static void release_bodies(dem_results *r)
 {
     const dem_body_view *b = &r->bodies;
     const void *all[] = {b->shape,       b->scale,    b->mass, b->position,
-                         b->orientation, b->velocity, b->spin, b->coordination};
+                         b->orientation, b->velocity, b->spin, b->coordination,
+                         b->id};
     for (size_t i = 0; i < sizeof all / sizeof *all; i++)
         free((void *)all[i]);
     r->bodies = (dem_body_view){0};
@@ -100,6 +102,17 @@ static dem_status make_columns(dem_results *r, size_t n, columns *c, dem_error *
     return DEM_OK;
 }
 
+// of the frame that was read, or the last one before a state that is none
+static dem_vec3 shift_of(const dem_results *r, size_t wall)
+{
+    const dem_vtp *v = &r->frame.vtp;
+    for (size_t i = 0; i < v->field_count; i++)
+        if (strcmp(v->fields[i].name, DEM_WALL_SHIFTS) == 0 && v->fields[i].type == DEM_VTP_FLOAT64 &&
+            v->fields[i].width == 3 * (int)r->scene.wall_count)
+            return ((const dem_vec3 *)v->fields[i].data)[wall];
+    return v3(0, 0, 0);
+}
+
 static dem_status place_walls(dem_results *r, dem_error *error)
 {
     free(r->walls);
@@ -111,7 +124,7 @@ static dem_status place_walls(dem_results *r, dem_error *error)
         double time = isfinite(r->time) ? r->time : 0;
         dem_wall_motion motion = dem_wall_motion_of(w);
         dem_wall_moment now = dem_wall_motion_at(&motion, time);
-        r->walls[i].position = dem_wall_pose(&motion, &now, v3(0, 0, 0), &r->walls[i].orientation);
+        r->walls[i].position = dem_wall_pose(&motion, &now, shift_of(r, i), &r->walls[i].orientation);
     }
     return DEM_OK;
 }
@@ -181,6 +194,14 @@ static dem_status fill_frame(dem_results *r, const char *path, dem_error *error)
     size_t n = v->point_count;
     columns c;
     DEM_TRY(make_columns(r, n, &c, error));
+    const dem_vtp_array *ids = dem_vtp_find(v, "id");
+    if (ids && ids->type == DEM_VTP_UINT32 && ids->width == 1) {
+        uint32_t *id = dem_alloc(n, sizeof *id);
+        r->bodies.id = id;
+        if (!id)
+            return dem_fail_memory(error);
+        memcpy(id, ids->data, n * sizeof *id);
+    }
     r->bodies.coordination = c.coordination = dem_alloc(n, sizeof *c.coordination);
     if (!c.coordination)
         return dem_fail_memory(error);
@@ -272,7 +293,11 @@ dem_status dem_results_last(dem_results *r, dem_error *error)
     bool whole = access(final, F_OK) == 0;  // a run that was stopped has none
     double last = n ? r->index.entries[n - 1].time : NAN;
     dem_status status;
-    if (n && (!whole || fabs(last - r->end) <= 1e-9 * fabs(r->end))) {
+    // only frames know where servo walls are
+    bool servo = false;
+    for (size_t i = 0; i < r->scene.wall_count; i++)
+        servo |= r->scene.walls[i].servo.on;
+    if (n && (!whole || servo || fabs(last - r->end) <= 1e-9 * fabs(r->end))) {
         status = dem_results_frame(r, n - 1, error);
     } else {
         release_bodies(r);

@@ -8,6 +8,7 @@
 #include "base/hash.h"
 #include "base/memory.h"
 #include "base/status.h"
+#include "out/breakages.h"
 #include "out/checkpoint.h"
 #include "out/final.h"
 #include "out/frames.h"
@@ -29,7 +30,7 @@ typedef struct runner {
     dem_frames *frames;
     dem_file_queue *queue;  // of the frames
     dem_series *series;
-    dem_network *network;
+    dem_network *network, *bonds;
     const dem_clump **clumps;  // of the shapes, as the world runs them
     char sha[65];
     double end;                                       // [s]
@@ -75,6 +76,19 @@ static dem_status write_network(runner *r, dem_error *error)
     dem_body_view bodies = dem_world_bodies(r->w);
     const dem_contact *contacts = dem_world_contacts(r->w, &count);
     return dem_network_write(r->network, dem_world_time(r->w), &bodies, contacts, count, error);
+}
+
+// with every frame: lines as they are, and the table of what has broken
+static dem_status write_bonds(runner *r, dem_error *error)
+{
+    size_t count;
+    DEM_TRY(measure(r, error));
+    dem_body_view bodies = dem_world_bodies(r->w);
+    const dem_bond_view *bonds = dem_world_bonds(r->w, &count);
+    DEM_TRY(dem_breakages_write(r->scene->output.directory, r->scene->bonds, bonds, count, error));
+    if (!r->bonds)
+        return DEM_OK;
+    return dem_network_write_bonds(r->bonds, dem_world_time(r->w), &bodies, bonds, count, error);
 }
 
 static dem_status write_checkpoint(runner *r, dem_error *error)
@@ -126,6 +140,8 @@ static dem_status do_events(runner *r, dem_error *error)
     double begin = dem_clock(), t = dem_world_time(r->w) + EVENT_TOLERANCE * dem_world_step_size(r->w);
     if (r->frames && due(r, r->next_frame)) {
         DEM_TRY(write_frame(r, error));
+        if (r->bonds)
+            DEM_TRY(write_bonds(r, error));
         r->next_frame = next_multiple(t, o->frames);
     }
     if (r->series && due(r, r->next_series)) {
@@ -307,11 +323,18 @@ static dem_status open_outputs(runner *r, double resume, dem_error *error)
         DEM_TRY(dem_frames_open(&def, &r->frames, error));
     }
     if (o->series > 0)
-        DEM_TRY(dem_series_open(&(dem_series_def){o->directory, r->scene->walls, r->scene->wall_count,
-                                                  r->scene->measures, r->scene->measure_count},
+        DEM_TRY(dem_series_open(&(dem_series_def){.directory = o->directory,
+                                                  .flow = r->w->population != NULL,
+                                                  .walls = r->scene->walls,
+                                                  .wall_count = r->scene->wall_count,
+                                                  .measures = r->scene->measures,
+                                                  .measure_count = r->scene->measure_count,
+                                                  .bonds = r->scene->bond_count > 0},
                                 resume, &r->series, error));
     if (o->contacts > 0)
-        DEM_TRY(dem_network_open(o->directory, &r->scene->domain, resume, &r->network, error));
+        DEM_TRY(dem_network_open(o->directory, "contacts", &r->scene->domain, resume, &r->network, error));
+    if (o->frames > 0 && r->scene->bond_count)
+        DEM_TRY(dem_network_open(o->directory, "bonds", &r->scene->domain, resume, &r->bonds, error));
     double t = isnan(resume) ? -1 : resume + EVENT_TOLERANCE * dem_world_step_size(r->w);
     r->next_frame = o->frames > 0 && t >= 0 ? next_multiple(t, o->frames) : 0;
     r->next_series = o->series > 0 && t >= 0 ? next_multiple(t, o->series) : 0;
@@ -328,6 +351,11 @@ static dem_status finish(runner *r, dem_error *error)
     dem_body_view bodies = dem_world_bodies(r->w);
     DEM_TRY(
         dem_final_write(r->ctx, r->scene->output.directory, r->scene->shapes, r->scene->shape_count, &bodies, error));
+    if (r->scene->bond_count) {
+        size_t count;
+        const dem_bond_view *bonds = dem_world_bonds(r->w, &count);
+        DEM_TRY(dem_breakages_write(r->scene->output.directory, r->scene->bonds, bonds, count, error));
+    }
     DEM_TRY(dem_file_queue_wait(r->queue, error));
     r->output_seconds += dem_clock() - begin;
     return DEM_OK;
@@ -348,6 +376,14 @@ static dem_status conclude(runner *r, dem_error *error)
     result->passes = dem_alloc(count + 1, sizeof *result->passes);
     if (!result->passes)
         return dem_fail_memory(error);
+    const dem_inlet_view *inlets = dem_world_inlets(r->w, &result->inlet_count);
+    result->inlets = dem_alloc(result->inlet_count, sizeof *result->inlets);
+    if (!result->inlets)
+        return dem_fail_memory(error);
+    for (size_t i = 0; i < result->inlet_count; i++) {
+        result->inlets[i] = inlets[i];
+        result->inlets[i].name = r->scene->inlets[i].name;
+    }
     memcpy(result->passes, passes, count * sizeof *passes);
     result->passes[count] = (dem_pass_time){"output", r->output_seconds};
     result->pass_count = count + 1;
@@ -402,6 +438,7 @@ dem_status dem_run(const dem_ctx *ctx, const dem_scene *scene, const dem_run_opt
     dem_file_queue_destroy(r.queue);
     dem_series_close(r.series);
     dem_network_close(r.network);
+    dem_network_close(r.bonds);
     free(r.clumps);
     dem_world_destroy(r.w);
     return status;
@@ -410,6 +447,7 @@ dem_status dem_run(const dem_ctx *ctx, const dem_scene *scene, const dem_run_opt
 void dem_run_release(dem_run_result *result)
 {
     free(result->passes);
+    free(result->inlets);
     free(result->checkpoint);
     free(result->stopped);
 }

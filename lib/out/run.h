@@ -25,6 +25,8 @@ typedef struct dem_run_result {
     int threads;
     dem_pass_time *passes;  ///< seconds of the timed steps; the last one is the output's
     size_t pass_count;
+    dem_inlet_view *inlets;  ///< with the names of the scene
+    size_t inlet_count;
     char *checkpoint;  ///< the last one written; NULL: none
     char *stopped;     ///< why the run ended before its end; NULL: it did not
 } dem_run_result;

@@ -17,7 +17,7 @@ typedef struct row {
     double value;
 } row;
 
-enum { ENERGIES = 11 };
+enum { ENERGIES = 12 };
 
 static void list_energies(const dem_energy *e, row rows[ENERGIES])
 {
@@ -27,7 +27,7 @@ static void list_energies(const dem_energy *e, row rows[ENERGIES])
         {"potential", "gravity", e->potential},        {"elastic", "in the contacts", e->elastic},
         {"friction", "lost to friction", e->friction}, {"viscous", "lost in contact dashpots", e->viscous},
         {"broken", "let go by broken bonds", e->broken}, {"local", "lost to local damping", e->local},
-        {"drag", "lost to viscous damping and drag", e->drag}};
+        {"drag", "lost to viscous damping and drag", e->drag}, {"brought", "brought by what came", e->brought}};
     memcpy(rows, list, sizeof list);
 }
 
@@ -41,6 +41,16 @@ static void put_energy(dem_json_writer *w, const dem_energy *energy)
     for (int i = 0; i < ENERGIES; i++)
         dem_json_put_number(w, rows[i].key, rows[i].value);
     dem_json_put_number(w, "error", energy->error);
+    dem_json_close(w, '}');
+}
+
+static void put_inlet(dem_json_writer *w, const dem_inlet_view *inlet)
+{
+    dem_json_open_object(w, inlet->name);
+    dem_json_put_whole(w, "bodies", (int64_t)inlet->bodies);
+    dem_json_put_number(w, "mass", inlet->mass);
+    dem_json_put_number(w, inlet->by_mass ? "asked_mass" : "asked_bodies", inlet->asked);
+    dem_json_put_number(w, inlet->by_mass ? "behind_mass" : "behind_bodies", inlet->behind);
     dem_json_close(w, '}');
 }
 
@@ -70,6 +80,14 @@ static void put_members(dem_json_writer *w, const dem_run_report *r)
     dem_json_put_number(w, "highest", f->highest);
     dem_json_put_number(w, "bytes_per_clump", r->bytes_per_clump);
     put_energy(w, &f->energy);
+    dem_json_put_whole(w, "came", (int64_t)f->came);
+    dem_json_put_number(w, "came_mass", f->came_mass);
+    dem_json_put_whole(w, "left", (int64_t)f->left);
+    dem_json_put_number(w, "left_mass", f->left_mass);
+    dem_json_open_object(w, "inlets");
+    for (size_t i = 0; i < r->inlet_count; i++)
+        put_inlet(w, &r->inlets[i]);
+    dem_json_close(w, '}');
     dem_json_open_object(w, "passes");
     for (size_t i = 0; i < r->pass_count; i++)
         dem_json_put_number(w, r->passes[i].name, r->passes[i].seconds);
@@ -198,6 +216,26 @@ static void put_speed(dem_buffer *out, const dem_run_report *r)
     dem_buffer_text(out, " bytes per clump\n");
 }
 
+static void put_flow(dem_buffer *out, const dem_run_report *r)
+{
+    const dem_figures *f = &r->figures;
+    if (f->came || f->left || r->inlet_count) {
+        dem_buffer_print(out, "  flow       %zu bodies came, ", f->came);
+        put_number(out, f->came_mass, 4);
+        dem_buffer_print(out, " kg; %zu left, ", f->left);
+        put_number(out, f->left_mass, 4);
+        dem_buffer_text(out, " kg\n");
+    }
+    for (size_t i = 0; i < r->inlet_count; i++) {
+        const dem_inlet_view *inlet = &r->inlets[i];
+        if (!(inlet->behind > 0))
+            continue;
+        dem_buffer_print(out, "  inlet      %s is ", inlet->name);
+        put_number(out, inlet->behind, 4);
+        dem_buffer_print(out, "%s behind its rate: there was no room\n", inlet->by_mass ? " kg" : " bodies");
+    }
+}
+
 // what a scene does not have is 0 to the last bit and left out
 static void put_ledger(dem_buffer *out, const dem_energy *energy)
 {
@@ -242,6 +280,7 @@ void dem_run_report_text(dem_buffer *out, const dem_run_report *r)
 {
     put_head(out, r);
     put_speed(out, r);
+    put_flow(out, r);
     put_ledger(out, &r->figures.energy);
     if (r->pass_count)
         put_passes(out, r);

@@ -20,6 +20,8 @@ typedef struct dem_run_report {
     int threads;
     const dem_pass_time *passes;
     size_t pass_count;
+    const dem_inlet_view *inlets;
+    size_t inlet_count;
     const char *const *warnings;
     size_t warning_count;
 } dem_run_report;

@@ -10,12 +10,21 @@
 #include "base/file.h"
 #include "base/memory.h"
 #include "out/names.h"
+#include "sim/wall_motion.h"
+
+// what a wall has beside its forces
+typedef struct wall_columns {
+    dem_vec3 through;
+    bool moves, servo, wears;
+} wall_columns;
 
 struct dem_series {
     char *path;
     int file;
     size_t size;  // bytes of whole rows
-    size_t rows, wall_count, measure_count;
+    size_t rows, columns, wall_count, measure_count;  // columns: of the whole
+    wall_columns *walls;
+    bool bonds;
 };
 
 // ---- columns
@@ -50,9 +59,16 @@ static const struct {
     COLUMN(NUMBER, "centre_y_m", centre.y),
     COLUMN(NUMBER, "centre_z_m", centre.z),
     COLUMN(NUMBER, "highest_m", highest),
+    // where bodies come and go
+    COLUMN(COUNT, "bodies", bodies),
+    COLUMN(COUNT, "came_bodies", came),
+    COLUMN(NUMBER, "came_kg", came_mass),
+    COLUMN(COUNT, "left_bodies", left),
+    COLUMN(NUMBER, "left_kg", left_mass),
+    COLUMN(NUMBER, "brought_J", energy.brought),
 #undef COLUMN
 };
-enum { COLUMNS = sizeof columns / sizeof *columns };
+enum { FLOW_COLUMNS = 6, COLUMNS = sizeof columns / sizeof *columns - FLOW_COLUMNS };
 
 // of a region
 static const struct {
@@ -88,6 +104,11 @@ static const struct {
 };
 enum { MEASURE_COLUMNS = sizeof measures / sizeof *measures };
 
+static wall_columns columns_of(const dem_wall_def *wall)
+{
+    return (wall_columns){wall->through, dem_wall_def_moves(wall), wall->servo.on, wall->wear.law != DEM_WEAR_NONE};
+}
+
 static dem_status put_head(dem_buffer *out, const dem_series_def *def, dem_error *error)
 {
     static const char *const parts[] = {"fx_N", "fy_N", "fz_N", "mx_Nm", "my_Nm", "mz_Nm"};
@@ -95,18 +116,27 @@ static dem_status put_head(dem_buffer *out, const dem_series_def *def, dem_error
     dem_plain_name *names = dem_alloc(count + def->measure_count, sizeof *names);
     if (!names)
         return dem_fail_memory(error);
-    for (size_t i = 0; i < COLUMNS; i++)
+    for (size_t i = 0; i < COLUMNS + (def->flow ? FLOW_COLUMNS : 0); i++)
         dem_buffer_print(out, "%s%s", i ? "," : "", columns[i].name);
     for (size_t i = 0; i < count; i++) {
         names[i] = dem_name_plain(def->walls[i].name, "wall", names, i);
         for (int k = 0; k < 6; k++)
             dem_buffer_print(out, ",%s_%s", names[i].text, parts[k]);
+        wall_columns more = columns_of(&def->walls[i]);
+        if (more.moves)
+            dem_buffer_print(out, ",%s_x_m,%s_y_m,%s_z_m", names[i].text, names[i].text, names[i].text);
+        if (more.servo)
+            dem_buffer_print(out, ",%s_stress_Pa", names[i].text);
+        if (more.wears)
+            dem_buffer_print(out, ",%s_wear_m3", names[i].text);
     }
     for (size_t i = 0; i < def->measure_count; i++) {
         names[count + i] = dem_name_plain(def->measures[i].name, "region", names, count + i);
         for (int k = 0; k < MEASURE_COLUMNS; k++)
             dem_buffer_print(out, ",%s_%s", names[count + i].text, measures[k].name);
     }
+    if (def->bonds)
+        dem_buffer_text(out, ",bonds,bonds_broken_tension,bonds_broken_shear");
     dem_buffer_text(out, "\n");
     free(names);
     return out->failed ? dem_fail_memory(error) : DEM_OK;
@@ -124,11 +154,29 @@ static void put_measure(dem_buffer *out, const dem_measure_view *view)
     }
 }
 
+// how far the wall has come, what presses on it, what it has lost
+static void put_more(dem_buffer *out, const wall_columns *wall, const dem_wall_view *view)
+{
+    dem_vec3 now = v3_add(view->position, quat_rotate(view->orientation, wall->through));
+    for (int k = 0; k < 3 && wall->moves; k++) {
+        dem_buffer_text(out, ",");
+        dem_buffer_shortest(out, v3_get(now, k) - v3_get(wall->through, k));
+    }
+    if (wall->servo) {
+        dem_buffer_text(out, ",");
+        dem_buffer_shortest(out, view->pressure);
+    }
+    if (wall->wears) {
+        dem_buffer_text(out, ",");
+        dem_buffer_shortest(out, view->worn);
+    }
+}
+
 static void put_row(dem_buffer *out, const dem_series *s, const dem_figures *figures, const dem_wall_view *walls,
                     const dem_measure_view *views)
 {
     size_t count = s->wall_count;
-    for (size_t i = 0; i < COLUMNS; i++) {
+    for (size_t i = 0; i < s->columns; i++) {
         const char *value = (const char *)figures + columns[i].at;
         if (i)
             dem_buffer_text(out, ",");
@@ -146,9 +194,12 @@ static void put_row(dem_buffer *out, const dem_series *s, const dem_figures *fig
             dem_buffer_text(out, ",");
             dem_buffer_shortest(out, parts[k]);
         }
+        put_more(out, &s->walls[i], &walls[i]);
     }
     for (size_t i = 0; i < s->measure_count; i++)
         put_measure(out, &views[i]);
+    if (s->bonds)
+        dem_buffer_print(out, ",%zu,%zu,%zu", figures->bonds, figures->bonds_tension, figures->bonds_shear);
     dem_buffer_text(out, "\n");
 }
 
@@ -205,9 +256,14 @@ dem_status dem_series_open(const dem_series_def *def, double resume, dem_series 
         return dem_fail_memory(error);
     *s = (dem_series){.path = dem_path_join(def->directory, "series.csv"),
                       .file = -1,
+                      .columns = COLUMNS + (def->flow ? FLOW_COLUMNS : 0),
                       .wall_count = def->wall_count,
-                      .measure_count = def->measure_count};
-    dem_status status = s->path ? dem_folder_create(def->directory, error) : dem_fail_memory(error);
+                      .measure_count = def->measure_count,
+                      .bonds = def->bonds};
+    s->walls = dem_alloc(def->wall_count, sizeof *s->walls);
+    for (size_t i = 0; s->walls && i < def->wall_count; i++)
+        s->walls[i] = columns_of(&def->walls[i]);
+    dem_status status = s->path && s->walls ? dem_folder_create(def->directory, error) : dem_fail_memory(error);
     if (status == DEM_OK)
         status = put_head(&head, def, error);
     if (status == DEM_OK)
@@ -261,5 +317,6 @@ void dem_series_close(dem_series *s)
     if (s->file >= 0)
         close(s->file);
     free(s->path);
+    free(s->walls);
     free(s);
 }

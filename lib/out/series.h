@@ -12,10 +12,12 @@ typedef struct dem_series dem_series;
 /// What the columns behind those of the whole stand for; borrowed while it is opened.
 typedef struct dem_series_def {
     const char *directory;
+    bool flow;                  ///< bodies come and go: columns of how many and how much
     const dem_wall_def *walls;  ///< six columns each: what the bodies do to it
     size_t wall_count;
     const dem_measure_def *measures;  ///< see dem_measure_view
     size_t measure_count;
+    bool bonds;  ///< three columns: bonds that live, and those that broke
 } dem_series_def;
 
 /// Begins the table; with a time in `resume` [s] (NAN: a new run) it goes on with the one that is there, from which the

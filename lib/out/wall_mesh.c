@@ -5,6 +5,7 @@
 
 #include "base/memory.h"
 #include "math/quat.h"
+#include "sim/surface.h"
 #include "sim/wall_motion.h"
 
 enum {
@@ -32,6 +33,35 @@ static dem_vec3 turned(const dem_wall_view *pose, dem_vec3 v)
 
 // ---- where they are cut
 
+// a circle about an axis
+static dem_box with_circle(dem_box box, dem_vec3 centre, dem_vec3 axis, double radius)
+{
+    for (int k = 0; k < 3; k++) {
+        double a = v3_get(axis, k), reach = radius * sqrt(fmax(0, 1 - a * a));
+        v3_set(&box.low, k, fmin(v3_get(box.low, k), v3_get(centre, k) - reach));
+        v3_set(&box.high, k, fmax(v3_get(box.high, k), v3_get(centre, k) + reach));
+    }
+    return box;
+}
+
+static dem_box with_surface(dem_box box, const dem_surface *s, const dem_wall_view *pose)
+{
+    dem_vec3 point = placed(pose, s->point), axis = turned(pose, s->axis);
+    if (s->kind == DEM_SURFACE_SPHERE) {
+        dem_vec3 reach = v3(s->begin, s->begin, s->begin);
+        return box_with(box_with(box, v3_sub(point, reach)), v3_add(point, reach));
+    }
+    if (s->kind == DEM_SURFACE_RECTANGLE) {
+        dem_vec3 u = v3_scale(turned(pose, s->along), s->half[0]);
+        dem_vec3 v = v3_scale(v3_cross(axis, turned(pose, s->along)), s->half[1]);
+        for (int k = 0; k < 4; k++)
+            box = box_with(box, v3_along(v3_along(point, k & 1 ? 1 : -1, u), k & 2 ? 1 : -1, v));
+        return box;
+    }
+    box = with_circle(box, point, axis, s->begin);
+    return s->endless ? box : with_circle(box, v3_along(point, s->run[1], axis), axis, s->begin + s->run[0]);
+}
+
 static dem_box with_wall(dem_box box, const dem_wall_def *wall, const dem_wall_view *pose)
 {
     if (wall->kind == DEM_WALL_MESH) {
@@ -41,6 +71,9 @@ static dem_box with_wall(dem_box box, const dem_wall_def *wall, const dem_wall_v
     }
     dem_vec3 point = placed(pose, wall->point);
     box = box_with(box, point);
+    dem_surface surface = dem_surface_of(wall);
+    if (surface.kind != DEM_SURFACE_NONE)
+        return with_surface(box, &surface, pose);
     if (wall->kind == DEM_WALL_CYLINDER) {
         dem_vec3 a = turned(pose, wall->normal);
         dem_vec3 reach = v3_scale(
@@ -141,6 +174,90 @@ static dem_status plane_mesh(dem_vec3 point, dem_vec3 normal, dem_box box, dem_m
     return DEM_OK;
 }
 
+static dem_status rectangle_mesh(const dem_surface *s, dem_mesh *mesh, dem_error *error)
+{
+    DEM_TRY(make_room(mesh, 4, 2, error));
+    dem_vec3 u = v3_scale(s->along, s->half[0]), v = v3_scale(v3_cross(s->axis, s->along), s->half[1]);
+    for (int k = 0; k < 4; k++)
+        mesh->vertices[mesh->vertex_count++] =
+            v3_along(v3_along(s->point, k == 0 || k == 3 ? -1 : 1, u), k < 2 ? -1 : 1, v);
+    put_triangle(mesh, 0, 1, 2);
+    put_triangle(mesh, 0, 2, 3);
+    return DEM_OK;
+}
+
+// between two circles, facing away from the axis, or along it where they are flat
+static dem_status ring_mesh(const dem_surface *s, const double radii[2], const double heights[2], dem_mesh *mesh,
+                            dem_error *error)
+{
+    DEM_TRY(make_room(mesh, 2 * SEGMENTS, 2 * SEGMENTS, error));
+    dem_vec3 u = v3_normal_to(s->axis), v = v3_cross(s->axis, u);
+    for (int i = 0; i < SEGMENTS; i++) {
+        double angle = 2 * DEM_PI * i / SEGMENTS;
+        dem_vec3 out = v3_along(v3_scale(u, cos(angle)), sin(angle), v);
+        for (int end = 0; end < 2; end++)
+            mesh->vertices[mesh->vertex_count++] =
+                v3_along(v3_along(s->point, heights[end], s->axis), radii[end], out);
+    }
+    for (size_t i = 0; i < SEGMENTS; i++) {
+        size_t low = 2 * i, next = 2 * ((i + 1) % SEGMENTS), turn = s->side > 0;
+        if (radii[1] > 0)
+            put_triangle(mesh, low, turn ? low + 1 : next + 1, turn ? next + 1 : low + 1);
+        if (radii[0] > 0)
+            put_triangle(mesh, low, turn ? next + 1 : next, turn ? next : next + 1);
+    }
+    return DEM_OK;
+}
+
+// as far along an axis as the box goes
+static double end_of_box(const dem_surface *s, dem_box box)
+{
+    double end = 0;
+    for (int k = 0; k < 8; k++)
+        end = fmax(end, v3_dot(v3_sub(v3(k & 1 ? box.high.x : box.low.x, k & 2 ? box.high.y : box.low.y,
+                                         k & 4 ? box.high.z : box.low.z),
+                                      s->point),
+                               s->axis));
+    return end;
+}
+
+// by meridians; the circles at the poles are points
+static dem_status ball_mesh(const dem_surface *s, dem_mesh *mesh, dem_error *error)
+{
+    enum { CIRCLES = SEGMENTS / 2 };
+    DEM_TRY(make_room(mesh, SEGMENTS * (CIRCLES + 1), 2 * SEGMENTS * CIRCLES, error));
+    for (int j = 0; j <= CIRCLES; j++)
+        for (int i = 0; i < SEGMENTS; i++) {
+            double tilt = DEM_PI * j / CIRCLES, angle = 2 * DEM_PI * i / SEGMENTS, r = s->begin * sin(tilt);
+            dem_vec3 out = v3(r * cos(angle), r * sin(angle), s->begin * cos(tilt));
+            mesh->vertices[mesh->vertex_count++] = v3_add(s->point, out);
+        }
+    for (size_t j = 0; j < CIRCLES; j++)
+        for (size_t i = 0; i < SEGMENTS; i++) {
+            size_t a = j * SEGMENTS + i, b = j * SEGMENTS + (i + 1) % SEGMENTS, turn = s->side > 0;
+            if (j > 0)
+                put_triangle(mesh, a, turn ? b : b + SEGMENTS, turn ? b + SEGMENTS : b);
+            if (j + 1 < CIRCLES)
+                put_triangle(mesh, a, turn ? b + SEGMENTS : a + SEGMENTS, turn ? a + SEGMENTS : b + SEGMENTS);
+        }
+    return DEM_OK;
+}
+
+static dem_status surface_mesh(const dem_surface *at_start, const dem_wall_view *pose, dem_box box, dem_mesh *mesh,
+                               dem_error *error)
+{
+    dem_surface s = *at_start;
+    s.point = placed(pose, s.point);
+    s.axis = turned(pose, s.axis);
+    s.along = turned(pose, s.along);
+    if (s.kind == DEM_SURFACE_SPHERE)
+        return ball_mesh(&s, mesh, error);
+    if (s.kind == DEM_SURFACE_RECTANGLE)
+        return rectangle_mesh(&s, mesh, error);
+    double length = s.endless ? end_of_box(&s, box) : s.run[1], reach = s.endless ? length / s.run[1] : 1;
+    return ring_mesh(&s, (double[]){s.begin, s.begin + reach * s.run[0]}, (double[]){0, length}, mesh, error);
+}
+
 static dem_status cylinder_mesh(const dem_wall_def *wall, dem_vec3 point, dem_vec3 axis, dem_box box, dem_mesh *mesh,
                                 dem_error *error)
 {
@@ -177,6 +294,9 @@ dem_status dem_wall_mesh(const dem_wall_def *wall, const dem_wall_view *pose, de
             mesh->vertices[i] = placed(pose, mesh->vertices[i]);
         return DEM_OK;
     }
+    dem_surface surface = dem_surface_of(wall);
+    if (surface.kind != DEM_SURFACE_NONE)
+        return surface_mesh(&surface, pose, box, mesh, error);
     dem_vec3 point = placed(pose, wall->point), normal = v3_unit(turned(pose, wall->normal));
     if (wall->kind == DEM_WALL_PLANE)
         return plane_mesh(point, normal, box, mesh, error);

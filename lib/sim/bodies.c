@@ -29,6 +29,8 @@ static bool make_columns(dem_world *w)
 #undef COLUMN
     b->momentum_rows = b->padded;
     b->place = dem_alloc(b->count, sizeof *b->place);
+    for (size_t row = 0; b->id && row < b->padded; row++)
+        b->id[row] = (uint32_t)DEM_ROW_FREE;
     return good && b->place;
 }
 
@@ -60,24 +62,24 @@ static int by_key(const void *a, const void *b)
 static dem_status order_bodies(const dem_world *w, const dem_body_def *defs, dem_error *error)
 {
     const dem_bodies *b = &w->bodies;
-    curve_point *points = dem_alloc(b->count, sizeof *points);
+    curve_point *points = dem_alloc(b->living, sizeof *points);
     if (!points)
         return dem_fail_memory(error);
     dem_box box = box_empty();
     double radius = 0;
-    for (size_t i = 0; i < b->count; i++) {
+    for (size_t i = 0; i < b->living; i++) {
         box = box_with(box, defs[i].position);
-        radius += w->templates.items[defs[i].shape].radius_out * defs[i].scale / (double)b->count;
+        radius += w->templates.items[defs[i].shape].radius_out * defs[i].scale / (double)b->living;
     }
     double cell = fmax(1.5 * radius, box_diagonal(box) / 0x1fffff);
-    for (size_t i = 0; i < b->count; i++) {
+    for (size_t i = 0; i < b->living; i++) {
         dem_vec3 at = v3_scale(v3_sub(defs[i].position, box.low), cell > 0 ? 1 / cell : 0);
         points[i] = (curve_point){spread_bits((uint64_t)at.x) | spread_bits((uint64_t)at.y) << 1 |
                                       spread_bits((uint64_t)at.z) << 2,
                                   (uint32_t)i};
     }
-    qsort(points, b->count, sizeof *points, by_key);
-    for (size_t i = 0; i < b->count; i++)
+    qsort(points, b->living, sizeof *points, by_key);
+    for (size_t i = 0; i < b->living; i++)
         b->place[points[i].body] = (uint32_t)i;
     free(points);
     return DEM_OK;
@@ -122,7 +124,7 @@ static void put_momentum(dem_world *w, size_t row, dem_quat q, dem_vec3 velocity
         memcpy(momentum + 3, (double[]){l.x, l.y, l.z}, 3 * sizeof *momentum);
 }
 
-static void put_body(dem_world *w, size_t row, const dem_body_def *def)
+void dem_body_put(dem_world *w, size_t row, const dem_body_def *def)
 {
     dem_bodies *b = &w->bodies;
     const dem_template *t = &w->templates.items[def->shape];
@@ -166,20 +168,82 @@ static void put_dummy(dem_bodies *b, size_t row, double at)
         b->strain_limit[row] = INFINITY;
 }
 
-dem_status dem_bodies_create(dem_world *w, const dem_body_def *defs, size_t count, dem_error *error)
+void dem_body_clear(dem_world *w, size_t row)
 {
     dem_bodies *b = &w->bodies;
-    b->count = count;
-    b->padded = (count + 2 + DEM_BLOCK_LANES - 1) / DEM_BLOCK_LANES * DEM_BLOCK_LANES;
-    b->dummy = (uint32_t)count;
+#define COLUMN(type, name, width, unit, when, about)                                                                   \
+    if (b->name)                                                                                                       \
+        memset(b->name + (width) * row, 0, (width) * sizeof(type));
+    DEM_BODY_COLUMNS(COLUMN)
+#undef COLUMN
+    put_dummy(b, row, row % 2 ? DUMMY_AT : -DUMMY_AT);
+    if (b->id)
+        b->id[row] = (uint32_t)DEM_ROW_FREE;
+}
+
+static void set_count(dem_bodies *b, size_t rows)
+{
+    b->count = rows;
+    b->padded = (rows + 2 + DEM_BLOCK_LANES - 1) / DEM_BLOCK_LANES * DEM_BLOCK_LANES;
+    b->dummy = (uint32_t)rows;
+}
+
+dem_status dem_bodies_create(dem_world *w, const dem_body_def *defs, size_t count, size_t rows, dem_error *error)
+{
+    dem_bodies *b = &w->bodies;
+    set_count(b, rows);
+    b->living = count;
     if (!make_columns(w))
         return dem_fail_memory(error);
     DEM_TRY(order_bodies(w, defs, error));
-    for (size_t i = 0; i < count; i++)
-        put_body(w, b->place[i], &defs[i]);
+    for (size_t i = 0; i < count; i++) {
+        dem_body_put(w, b->place[i], &defs[i]);
+        if (b->id)
+            b->id[b->place[i]] = (uint32_t)i;
+    }
     for (size_t row = count; row < b->padded; row++)
         put_dummy(b, row, row % 2 ? DUMMY_AT : -DUMMY_AT);
     return DEM_OK;
+}
+
+bool dem_bodies_grow(dem_world *w, size_t rows)
+{
+    dem_bodies old = w->bodies, *b = &w->bodies;
+    bool good = true;
+    set_count(b, rows);
+    b->place = dem_alloc(rows, sizeof *b->place);
+    good = b->place;
+    // all columns first, so that nothing is half grown
+#define COLUMN(type, name, width, unit, when, about)                                                                   \
+    if (old.name) {                                                                                                    \
+        b->name = column(b->padded, (width) * sizeof(type));                                                           \
+        good = good && b->name;                                                                                        \
+    }
+    DEM_BODY_COLUMNS(COLUMN)
+#undef COLUMN
+    if (!good) {
+        free(b->place);
+#define COLUMN(type, name, width, unit, when, about)                                                                   \
+    if (old.name)                                                                                                      \
+        free(b->name);
+        DEM_BODY_COLUMNS(COLUMN)
+#undef COLUMN
+        *b = old;
+        return false;
+    }
+#define COLUMN(type, name, width, unit, when, about)                                                                   \
+    if (old.name) {                                                                                                    \
+        memcpy(b->name, old.name, old.count *(width) * sizeof(type));                                                  \
+        free(old.name);                                                                                                \
+    }
+    DEM_BODY_COLUMNS(COLUMN)
+#undef COLUMN
+    memcpy(b->place, old.place, old.living * sizeof *b->place);
+    free(old.place);
+    b->momentum_rows = b->padded;
+    for (size_t row = old.count; row < b->padded; row++)
+        dem_body_clear(w, row);
+    return true;
 }
 
 void dem_bodies_release(dem_bodies *b)
@@ -211,7 +275,7 @@ void dem_bodies_wrap(dem_world *w, int32_t *moved)
     for (size_t row = 0; row < b->count; row++)
         for (int k = 0; k < 3; k++) {
             int32_t n = 0;
-            if (w->domain.periodic[k]) {
+            if (w->domain.periodic[k] && !body_absent(b, row)) {
                 double low = v3_get(w->domain.low, k), side = v3_get(w->domain.high, k) - low;
                 double *x = &body_pose(b, row)[k];
                 n = (int32_t)floor((*x - low) / side);

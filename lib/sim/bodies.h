@@ -4,8 +4,16 @@
 
 #include "sim/state.h"
 
-/// Makes the columns a world needs and puts the bodies there, along a space-filling curve. Needs templates.
-dem_status dem_bodies_create(dem_world *world, const dem_body_def *defs, size_t count, dem_error *error);
+/// Makes the columns a world needs, of `rows` rows, and puts the bodies into the first of them, along a space-filling
+/// curve. Needs templates.
+dem_status dem_bodies_create(dem_world *world, const dem_body_def *defs, size_t count, size_t rows, dem_error *error);
+/// More rows, free ones; the dummies move behind them, and slots of momenta are gone. False: no memory, all as it was.
+bool dem_bodies_grow(dem_world *world, size_t rows);
+
+/// Puts a body into a row, with the momenta of its velocities; lists know nothing of it yet.
+void dem_body_put(dem_world *world, size_t row, const dem_body_def *def);
+/// Makes a row one without a body.
+void dem_body_clear(dem_world *world, size_t row);
 void dem_bodies_release(dem_bodies *bodies);
 
 /// Room for `slots` rows of momentum behind those of the bodies, zeroed where new.

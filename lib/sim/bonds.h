@@ -19,6 +19,7 @@ typedef struct dem_bond {
     double stiffness[BOND_WAYS];       ///< [N/m], [N m/rad]
     double damping[BOND_WAYS];         ///< [N s/m], [N m s/rad]
     double radius;                     ///< of the disc [m]
+    double apart;                      ///< of the surfaces when it was made [m]
     double drag[6];                    ///< impulse of the dashpots on a in the last step [N s], [N m s]
     double viscous, broken;            ///< dissipated so far; let go by the breakage [J]
     double time, point[3], stress[2];  ///< of the breakage [s], [m], [Pa]

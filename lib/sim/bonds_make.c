@@ -8,7 +8,9 @@
 #include "sim/broad.h"
 #include "sim/measure.h"
 
-static const double LEAST_LENGTH = 1e-3;  // of the smaller radius, between centres
+static const double LEAST_LENGTH = 1e-3;    // of the smaller radius, between centres
+static const double LARGEST = 1e100;        // stiffness [N/m], [N m/rad], and of dashpots
+static const double OVERLAP_WARNED = 0.05;  // of the smaller radius
 
 // ---- definitions
 
@@ -176,6 +178,7 @@ static void put_bond(const dem_world *w, const dem_pair *pair, dem_vec3 shift, c
                        .sphere_a = s[0].sphere,
                        .sphere_b = s[1].sphere,
                        .def = which,
+                       .apart = -overlap,
                        .radius = def->radius_multiplier * smaller(s[0].radius, s[1].radius)};
     int image[3];
     image_of(pair->image, image);
@@ -260,6 +263,14 @@ static dem_status bond_spheres(dem_world *w, const dem_pair *pair, dem_vec3 shif
         return dem_fail_memory(error);
     dem_bond *bond = &b->items[b->count];
     put_bond(w, pair, shift, s, which, bond);
+    double most = 0;
+    for (int k = 0; k < BOND_WAYS; k++)
+        most = larger(most, larger(bond->stiffness[k], bond->damping[k]));
+    if (!(most < LARGEST))
+        return dem_fail(error, DEM_BAD_INPUT,
+                        "bonds \"%.60s\" are too stiff to be computed; lower \"young\", \"radius_multiplier\" or "
+                        "\"damping\"",
+                        b->defs[which].name);
     // a contact that goes takes its energy along
     if (w->steps && b->defs[which].contact == DEM_BOND_INSTEAD)
         bond->broken = dem_contact_elastic(w, bond->a, bond->b, bond->sphere_a, bond->sphere_b);
@@ -303,6 +314,31 @@ static void ask_for_masks(dem_world *w)
     }
 }
 
+// Where such a bond breaks, the overlap of its spheres comes free at once.
+static void warn_of_overlaps(const dem_world *w, size_t old)
+{
+    const dem_bonds *b = w->bonds;
+    double worst = 0;
+    size_t count = 0;
+    uint32_t which = 0;
+    for (size_t i = old; i < b->count; i++) {
+        const dem_bond *bond = &b->items[i];
+        const dem_bond_def *def = &b->defs[bond->def];
+        bool breaks = isfinite(def->tensile_strength) || isfinite(def->shear_strength);
+        double least = bond->radius / def->radius_multiplier, ratio = -bond->apart / least;
+        if (!breaks || def->contact != DEM_BOND_INSTEAD || ratio < OVERLAP_WARNED)
+            continue;
+        count++;
+        which = ratio > worst ? bond->def : which;
+        worst = larger(worst, ratio);
+    }
+    if (count)
+        dem_log(w->ctx, DEM_LOG_WARNING,
+                "bonds \"%s\" stand for %zu contacts of spheres that overlap, by up to %.2g %% of the smaller radius; "
+                "where they break, the spheres burst apart: let bodies start apart, or write \"contact\": \"parallel\"",
+                b->defs[which].name, count, 100 * worst);
+}
+
 dem_status dem_bonds_make(dem_world *w, dem_error *error)
 {
     dem_bonds *b = w->bonds;
@@ -324,6 +360,7 @@ dem_status dem_bonds_make(dem_world *w, dem_error *error)
         b->made[d] |= due;
     }
     set_due(b);
+    warn_of_overlaps(w, old);
     qsort(b->items, b->count, sizeof *b->items, by_spheres);
     if (!dem_bonds_list(w))
         return dem_fail_memory(error);

@@ -9,6 +9,7 @@
 
 #include "base/status.h"
 #include "sim/bodies.h"
+#include "sim/population.h"
 
 enum { LEVELS = 24, CELLS_LEAST = 4 };
 
@@ -54,12 +55,14 @@ double dem_broad_skin(const dem_world *w)
     double sum = 0;
     for (size_t i = 0; i < w->bodies.count; i++)
         sum += w->bodies.radius[i];
-    return w->bodies.count ? SKIN * sum / (double)w->bodies.count : 0;
+    if (w->population && !w->bodies.living)
+        return SKIN * dem_population_radius(w->population);
+    return w->bodies.living ? SKIN * sum / (double)w->bodies.living : 0;
 }
 
 dem_status dem_broad_images(dem_world *w, dem_error *error)
 {
-    double side[3], largest = 0;
+    double side[3], largest = w->population ? dem_population_largest(w->population) : 0;
     for (size_t i = 0; i < w->bodies.count; i++)
         largest = larger(largest, w->bodies.radius[i]);
     for (int k = 0; k < 3; k++) {
@@ -174,8 +177,11 @@ static void sort_by_size(search *s, size_t counts[LEVELS])
     size_t sizes[LEVELS] = {0};
     int rank[LEVELS];
     for (size_t i = 0; i < b->count; i++)
-        smallest = smaller(smallest, b->radius[i]);
+        if (!body_absent(b, i))
+            smallest = smaller(smallest, b->radius[i]);
     for (size_t i = 0; i < b->count; i++) {
+        if (body_absent(b, i))
+            continue;
         int octave = (int)smaller(log2(b->radius[i] / smallest) + 1e-9, LEVELS - 1);
         s->level_of[i] = (uint8_t)octave;
         sizes[octave]++;
@@ -190,7 +196,8 @@ static void sort_by_size(search *s, size_t counts[LEVELS])
             l->radius = largest[k];
         }
     for (size_t i = 0; i < b->count; i++)
-        s->level_of[i] = (uint8_t)rank[s->level_of[i]];
+        if (!body_absent(b, i))
+            s->level_of[i] = (uint8_t)rank[s->level_of[i]];
 }
 
 static dem_status build_grids(search *s, dem_error *error)
@@ -200,6 +207,8 @@ static dem_status build_grids(search *s, dem_error *error)
     s->box = box_empty();
     double largest = 0;
     for (size_t i = 0; i < b->count; i++) {
+        if (body_absent(b, i))
+            continue;
         s->box = box_with(s->box, body_position(b, i));
         largest = larger(largest, b->radius[i]);
     }
@@ -214,6 +223,8 @@ static dem_status build_grids(search *s, dem_error *error)
         s->levels[k].end = begin += counts[k];
     }
     for (size_t i = 0; i < b->count; i++) {
+        if (body_absent(b, i))
+            continue;
         level *l = &s->levels[s->level_of[i]];
         int32_t c[3];
         cell_of(s, l, body_position(b, i), c);
@@ -228,6 +239,8 @@ static dem_status build_grids(search *s, dem_error *error)
             l->start[c] += l->start[c - 1];
     }
     for (size_t i = 0; i < b->count; i++) {
+        if (body_absent(b, i))
+            continue;
         uint32_t at = s->levels[s->level_of[i]].start[s->cell[i] + 1]++;
         dem_vec3 x = v3_sub(body_position(b, i), s->box.low);
         s->id[at] = (uint32_t)i;
@@ -520,7 +533,7 @@ dem_status dem_broad_search(dem_world *w, dem_error *error)
         dem_bodies_wrap(w, s->moved);
     DEM_TRY(build_grids(s, error));
     for (uint32_t i = 0; i < w->bodies.count; i++)
-        if (!look_from(s, i))
+        if (!body_absent(&w->bodies, i) && !look_from(s, i))
             return dem_fail_memory(error);
     DEM_TRY(replace_pairs(s, error));
     memcpy(w->bodies.path_then, w->bodies.path, w->bodies.count * sizeof *w->bodies.path_then);

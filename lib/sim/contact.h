@@ -8,6 +8,9 @@
 #include "sim/contact_geometry.h"
 #include "sim/law/bond.h"
 #include "sim/law/turning.h"
+#ifdef DEM_USER_LAW
+#include "sim/user_forces.h"
+#endif
 
 DEM_INLINE void load_law(const dem_features f, const dem_rows *rows, const uint32_t *row, wide law[LAW_SLOTS])
 {
@@ -22,13 +25,6 @@ DEM_INLINE void load_law(const dem_features f, const dem_rows *rows, const uint3
         law[k] = wide_all(rows->laws[k]);
     for (int k = LAW_MORE; more && k < LAW_SLOTS; k++)
         law[k] = wide_all(rows->laws[k]);
-}
-
-/// Sums in lanes of 8 whatever the width.
-DEM_INLINE void tally_add(double sum[DEM_BLOCK_LANES], size_t g, wide x)
-{
-    double *lane = sum + g % DEM_BLOCK_LANES;
-    wide_store(lane, wide_load(lane) + x);
 }
 
 // energy dissipated since the last step [J]
@@ -139,17 +135,6 @@ DEM_INLINE wide contact_hardness(const dem_features f, const wide *law, const no
     if (f.restitution)
         c = wide_fma(law[LAW_ZETA], wide_sqrt(n->stiffness * mass), c);
     return wide_fma(c, per_step, n->stiffness);
-}
-
-DEM_INLINE wide3 load3(double *const column[3], size_t at)
-{
-    return (wide3){wide_load(column[0] + at), wide_load(column[1] + at), wide_load(column[2] + at)};
-}
-DEM_INLINE void store3(double *const column[3], size_t at, wide3 v)
-{
-    wide_store(column[0] + at, v.x);
-    wide_store(column[1] + at, v.y);
-    wide_store(column[2] + at, v.z);
 }
 
 typedef struct contact_moment {
@@ -389,8 +374,11 @@ DEM_INLINE void contact_batches(const dem_features f, const dem_rows *rows, cons
                 wall_velocity(f, rows, c, from + g, g, &batch);
             else
                 pair_velocity(f, rows, c, from + g, g, &batch);
-        for (size_t g = 0; g < count; g += DEM_WIDTH)
+        for (size_t g = 0; g < count && (!f.user || f.linear || f.hertz); g += DEM_WIDTH)
             contact_law(f, rows, job, from + g, g, &batch, wall, record);
+#ifdef DEM_USER_LAW
+        user_forces(f, rows, job, from, count, &batch, wall, record);
+#endif
         if (record)
             continue;
         for (size_t block = 0; block < count; block += DEM_BLOCK_LANES) {

@@ -36,7 +36,9 @@ enum {
     AT_WALL_SPIN = 38,
     AT_RADIUS = 41,  // the smaller one
     AT_BOUND = 42,   // of what is taken off the spin
-    AT_COUNT = 43
+    AT_RADIUS_A = 43,  // both
+    AT_RADIUS_B = 44,
+    AT_COUNT = 45
 };
 
 typedef struct contact_batch {
@@ -52,6 +54,24 @@ DEM_INLINE void put3(contact_batch *b, int at, size_t g, wide3 v)
     wide_store(b->at[at] + g, v.x);
     wide_store(b->at[at + 1] + g, v.y);
     wide_store(b->at[at + 2] + g, v.z);
+}
+
+DEM_INLINE wide3 load3(double *const column[3], size_t at)
+{
+    return (wide3){wide_load(column[0] + at), wide_load(column[1] + at), wide_load(column[2] + at)};
+}
+DEM_INLINE void store3(double *const column[3], size_t at, wide3 v)
+{
+    wide_store(column[0] + at, v.x);
+    wide_store(column[1] + at, v.y);
+    wide_store(column[2] + at, v.z);
+}
+
+/// Sums in lanes of 8 whatever the width.
+DEM_INLINE void tally_add(double sum[DEM_BLOCK_LANES], size_t g, wide x)
+{
+    double *lane = sum + g % DEM_BLOCK_LANES;
+    wide_store(lane, wide_load(lane) + x);
 }
 
 /// R(q) v of the rows' quaternions q0..q3 = q[0..3]
@@ -108,6 +128,10 @@ DEM_INLINE bool damped(const dem_features f)
 {
     return f.rate || f.restitution;
 }
+DEM_INLINE bool needs_mass(const dem_features f)
+{
+    return damped(f) || f.user;
+}
 DEM_INLINE bool turns(const dem_features f)
 {
     return features_turning(f);
@@ -118,7 +142,7 @@ DEM_INLINE bool adheres(const dem_features f)
 }
 DEM_INLINE bool needs_reduced(const dem_features f)
 {
-    return f.hertz || turns(f) || f.dmt || f.bonded;
+    return f.hertz || turns(f) || f.dmt || f.bonded || f.user;
 }
 
 /// 1 / (I + m r^2) of a body that rolls on a surface of radius r, with its mean moment I, and 1 / its least moment.
@@ -173,7 +197,7 @@ DEM_INLINE void pair_geometry(const dem_features f, const dem_rows *rows, const 
     put3(batch, AT_A, g, along3(a.arm, a.sphere[3] - half, n));
     put3(batch, AT_B, g, along3(b.arm, half - b.sphere[3], n));
     note_overlap(largest, overlap, wide_min(a.sphere[3], b.sphere[3]));
-    if (damped(f) && f.local_mass)
+    if (needs_mass(f) && f.local_mass)
         wide_store(batch->at[AT_MASS] + g,
                    inverse_local_mass(f, rows, c->a + at, &a, n) + inverse_local_mass(f, rows, c->b + at, &b, n));
     if (needs_reduced(f))
@@ -186,6 +210,10 @@ DEM_INLINE void pair_geometry(const dem_features f, const dem_rows *rows, const 
         put_lens(batch, g, lens_of_balls(a.sphere[3], b.sphere[3], distance, overlap));
     if (f.roll_bound)
         wide_store(batch->at[AT_RADIUS] + g, wide_min(a.sphere[3], b.sphere[3]));
+    if (f.user) {
+        wide_store(batch->at[AT_RADIUS_A] + g, a.sphere[3]);
+        wide_store(batch->at[AT_RADIUS_B] + g, b.sphere[3]);
+    }
     if (turns(f)) {
         wide brisk_a, brisk_b,
             inverse = inverse_rolling(rows, c->a + at, a.sphere[3], &brisk_a) +
@@ -209,10 +237,10 @@ DEM_INLINE void pair_velocity(const dem_features f, const dem_rows *rows, const 
          (wide3){(b[0] - a[0]) + (vb.x - va.x), (b[1] - a[1]) + (vb.y - va.y), (b[2] - a[2]) + (vb.z - va.z)});
     if (turns(f))
         put3(batch, AT_SPIN, g, (wide3){b[3] - a[3], b[4] - a[4], b[5] - a[5]});
-    if (f.friction || f.rolling)
+    if (f.friction || f.rolling || f.user_vectors)
         wide_store(batch->at[AT_TURN] + g,
                    wide_all(0.5) * dot3((wide3){a[3] + b[3], a[4] + b[4], a[5] + b[5]}, get3(batch, AT_NORMAL, g)));
-    if (damped(f) && !f.local_mass)
+    if (needs_mass(f) && !f.local_mass)
         wide_store(batch->at[AT_MASS] + g, a[6] + b[6]);
     if (f.watch) {
         wide_store(batch->at[AT_LEAST_A] + g, a[7]);
@@ -256,7 +284,7 @@ DEM_INLINE void wall_geometry(const dem_features f, const dem_rows *rows, const 
     wide_store(batch->at[AT_OVERLAP] + g, overlap);
     put3(batch, AT_A, g, point);
     note_overlap(largest, overlap, a.sphere[3]);
-    if (damped(f) && f.local_mass)
+    if (needs_mass(f) && f.local_mass)
         wide_store(batch->at[AT_MASS] + g, inverse_local_mass(f, rows, c->a + at, &a, n));
     if (needs_reduced(f))
         wide_store(batch->at[AT_REDUCED] + g, a.sphere[3]);
@@ -266,6 +294,8 @@ DEM_INLINE void wall_geometry(const dem_features f, const dem_rows *rows, const 
         put_lens(batch, g, lens_at_wall(a.sphere[3], overlap));
     if (f.roll_bound)
         wide_store(batch->at[AT_RADIUS] + g, a.sphere[3]);
+    if (f.user)
+        wide_store(batch->at[AT_RADIUS_A] + g, a.sphere[3]);
     if (turns(f)) {
         wide brisk;
         wide_store(batch->at[AT_ROLL_INERTIA] + g, inverse_rolling(rows, c->a + at, a.sphere[3], &brisk));
@@ -299,9 +329,9 @@ DEM_INLINE void wall_velocity(const dem_features f, const dem_rows *rows, const 
     put3(batch, AT_VELOCITY, g, v);
     if (turns(f))
         put3(batch, AT_SPIN, g, over);
-    if (f.friction || f.rolling)
+    if (f.friction || f.rolling || f.user_vectors)
         wide_store(batch->at[AT_TURN] + g, wide_all(0.5) * dot3(turning, get3(batch, AT_NORMAL, g)));
-    if (damped(f) && !f.local_mass)
+    if (needs_mass(f) && !f.local_mass)
         wide_store(batch->at[AT_MASS] + g, a[6]);
     if (f.watch)
         wide_store(batch->at[AT_LEAST_A] + g, a[7]);

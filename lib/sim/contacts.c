@@ -115,14 +115,11 @@ dem_contact_history dem_history_get(const dem_contact_columns *c, size_t at)
 {
     dem_contact_history h = {.twist = c->twist ? c->twist[at] : 0,
                              .patch = c->patch ? c->patch[at] : 0,
-                             .bond = c->bond ? c->bond[at] : 0,
                              .attached = c->attached ? c->attached[at] : 0,
                              .loss = c->loss ? c->loss[at] : 0};
     for (int k = 0; k < 3; k++) {
         h.spring[k] = c->spring[k] ? c->spring[k][at] : 0;
         h.dash[k] = c->dash[k] ? c->dash[k][at] : 0;
-        h.roll[k] = c->roll[k] ? c->roll[k][at] : 0;
-        h.drag[k] = c->drag[k] ? c->drag[k][at] : 0;
     }
     return h;
 }
@@ -134,21 +131,48 @@ void dem_history_put(const dem_contact_columns *c, size_t at, const dem_contact_
             c->spring[k][at] = h->spring[k];
         if (c->dash[k])
             c->dash[k][at] = h->dash[k];
-        if (c->roll[k])
-            c->roll[k][at] = h->roll[k];
-        if (c->drag[k])
-            c->drag[k][at] = h->drag[k];
     }
     if (c->twist)
         c->twist[at] = h->twist;
     if (c->patch)
         c->patch[at] = h->patch;
-    if (c->bond)
-        c->bond[at] = h->bond;
     if (c->attached)
         c->attached[at] = h->attached;
     if (c->loss)
         c->loss[at] = h->loss;
+}
+
+dem_contact_extras dem_extras_of(const dem_contact_columns *c)
+{
+    dem_contact_extras extras = {.count = 0};
+#define EXTRA(type, name, unit, when, about)                                                                           \
+    if (c->name)                                                                                                       \
+        extras.column[extras.count++] = c->name;
+    DEM_CONTACT_EXTRAS(EXTRA)
+#undef EXTRA
+    return extras;
+}
+
+bool dem_extras_keep(const dem_contact_extras *extras, const dem_segment *s, const dem_contact_item *items,
+                     size_t count, dem_extras_kept *kept)
+{
+    size_t needed = (size_t)extras->count * count;
+    while (kept->capacity < needed)
+        if (!dem_grow(&kept->numbers, &kept->capacity, kept->capacity, sizeof *kept->numbers))
+            return false;
+    for (int e = 0; e < extras->count; e++)
+        for (size_t k = 0; k < count; k++)
+            kept->numbers[(size_t)e * count + k] =
+                items[k].old ? extras->column[e][s->begin + items[k].old - 1] : 0;
+    return true;
+}
+
+void dem_extras_give(const dem_contact_extras *extras, const dem_segment *s, size_t count, size_t full,
+                     const dem_extras_kept *kept)
+{
+    for (int e = 0; e < extras->count; e++)
+        for (size_t k = 0; k < full; k++)
+            extras->column[e][segment_place(s, k)] = k < count ? kept->numbers[(size_t)e * count + k] : 0;
 }
 
 dem_contact_item dem_contact_get(const dem_contact_columns *c, size_t at)
@@ -192,6 +216,8 @@ dem_contact_item dem_contact_idle(const dem_world *w, int form)
 typedef struct list {
     dem_contact_item *items;
     size_t count, capacity;
+    dem_contact_extras extras;
+    dem_extras_kept kept;
 } list;
 
 // whether the k-th old contact of a pair comes before this one; both lists are sorted by their spheres
@@ -209,8 +235,10 @@ static void take_history(const dem_world *w, const dem_segment *s, const dem_pai
     if (*k == p->count)
         return;
     size_t at = segment_place(s, p->start + *k);
-    if (c->sphere_a[at] == item->sphere_a && c->sphere_b[at] == item->sphere_b)
-        item->history = dem_history_get(c, at);
+    if (c->sphere_a[at] != item->sphere_a || c->sphere_b[at] != item->sphere_b)
+        return;
+    item->history = dem_history_get(c, at);
+    item->old = (uint32_t)(at - s->begin) + 1;
 }
 
 static bool add_item(list *l, const dem_contact_item *item)
@@ -226,7 +254,9 @@ static bool list_pair(const dem_world *w, const dem_segment *s, dem_pair *p, con
     size_t start = l->count, old = 0;
     if (!fresh)
         for (size_t i = 0; i < p->count; i++) {
-            dem_contact_item item = dem_contact_get(&w->contacts.columns, segment_place(s, p->start + i));
+            size_t at = segment_place(s, p->start + i);
+            dem_contact_item item = dem_contact_get(&w->contacts.columns, at);
+            item.old = (uint32_t)(at - s->begin) + 1;
             item.shift = p->image;
             if (!add_item(l, &item))
                 return false;
@@ -294,9 +324,12 @@ static bool rebuild_segment(dem_world *w, size_t segment, list *l)
     while (l->count % DEM_BLOCK_LANES)
         if (!add_item(l, &idle))
             return false;
+    if (!dem_extras_keep(&l->extras, s, l->items, l->count, &l->kept))
+        return false;
     s->end = s->begin + l->count;
     for (size_t k = 0; k < l->count; k++)
         dem_contact_put(&w->contacts.columns, segment_place(s, k), &l->items[k]);
+    dem_extras_give(&l->extras, s, l->count, l->count, &l->kept);
     set_targets(w, segment, l);
     s->dirty = false;
     return true;
@@ -360,7 +393,7 @@ static void rebuild_part(void *user, int part)
     rebuilding *r = user;
     if (part >= r->parts)
         return;
-    list l = {0};
+    list l = {.extras = dem_extras_of(&r->w->contacts.columns)};
     size_t parts = (size_t)r->parts, from = r->count * (size_t)part / parts, to = r->count * ((size_t)part + 1) / parts;
     for (size_t i = from; i < to; i++)
         if (!rebuild_segment(r->w, r->segments[i], &l)) {
@@ -368,6 +401,7 @@ static void rebuild_part(void *user, int part)
             break;
         }
     free(l.items);
+    free(l.kept.numbers);
 }
 
 dem_status dem_contacts_rebuild(dem_world *w, dem_error *error)

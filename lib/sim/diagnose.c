@@ -11,12 +11,14 @@ typedef enum warning {
     WARN_TUNNEL,
     WARN_ENERGY,
     WARN_SEARCH,
+    WARN_INLET,
 } warning;
 
 static const double PENETRATION = 0.05;  // of the smaller radius
 static const double TUNNEL = 0.1;        // of a radius in a step
 static const double ENERGY_OFF = 0.01;   // of the energy turned over
 static const double CONTACT_STEPS = 10;  // least number of steps in a contact
+static const double INLET_BEHIND = 0.02;  // of what is asked for
 static const double SEARCH_EVERY = 5;    // steps between searches
 
 // true: not said yet, or by now twice as bad
@@ -84,7 +86,7 @@ static void judge_speed(dem_world *w)
 {
     double most = 0;
     uint32_t fastest = 0;
-    for (size_t i = 0; i < w->bodies.count; i++) {
+    for (size_t i = 0; i < w->bodies.living; i++) {
         size_t row = w->bodies.place[i];
         double radius = w->templates.items[w->bodies.shape[row]].radius_min * body_scale(&w->bodies, row);
         double moved = body_stride(&w->bodies, row, w->next_step) / radius;
@@ -112,7 +114,7 @@ static void judge_energy(dem_world *w)
 
 static void judge_search(dem_world *w)
 {
-    if (w->steps < 1000 || w->searches * SEARCH_EVERY < (double)w->steps)
+    if (w->population || w->steps < 1000 || w->searches * SEARCH_EVERY < (double)w->steps)
         return;
     double often = (double)w->searches / (double)w->steps;
     if (worse(w, WARN_SEARCH, often))
@@ -121,6 +123,26 @@ static void judge_search(dem_world *w)
             "neighbours are searched every %.2g steps: single bodies are very fast for the others' size; the run is "
             "right but slow",
             1 / often);
+}
+
+// more behind than a body or two, and not because it has only just begun to wait
+static void judge_inlets(dem_world *w)
+{
+    size_t count;
+    const dem_inlet_view *views = dem_world_inlets(w, &count), *worst = NULL;
+    double most = 0;
+    for (size_t i = 0; i < count; i++) {
+        double part = views[i].asked > 0 ? views[i].behind / views[i].asked : 0;
+        if (views[i].behind > 0 && part > INLET_BEHIND && part > most) {
+            most = part;
+            worst = &views[i];
+        }
+    }
+    if (worst && worse(w, WARN_INLET, most))
+        dem_log(w->ctx, DEM_LOG_WARNING,
+                "inlet \"%.60s\" is %.3g%s behind of %.3g asked for by its rate, as there is no room; make it larger, "
+                "let bodies leave it faster, or lower the rate",
+                worst->name, worst->behind, worst->by_mass ? " kg" : " bodies", worst->asked);
 }
 
 dem_status dem_world_diagnose(dem_world *w, dem_error *error)
@@ -133,5 +155,6 @@ dem_status dem_world_diagnose(dem_world *w, dem_error *error)
     judge_speed(w);
     judge_energy(w);
     judge_search(w);
+    judge_inlets(w);
     return DEM_OK;
 }

@@ -218,8 +218,7 @@ DEM_INLINE void damp(const dem_motion_job *job, const wide before[8], const wide
     }
 }
 
-/// Takes the damping back of what is held: nothing slows that. Of one body, as all that other schemes and held bodies
-/// do.
+/// Takes the damping back of what is held, which nothing slows. One body at a time: see motion.c.
 DEM_INLINE void spare_held(const dem_motion_job *job, size_t row, wide momentum[8], damping *d)
 {
     uint32_t hold = job->hold[row];
@@ -275,22 +274,7 @@ DEM_INLINE void note_strained(dem_motion_job *job, size_t i, wide strain)
 typedef void motion_advance(const dem_motion_job *job, size_t row, const wide was[8], const wide inertia[8],
                             wide pose[8], wide motion[8], wide momentum[8]);
 
-// the default: central differences, lsym
-DEM_INLINE void advance_central(const dem_motion_job *job, const wide inertia[8], wide pose[8], wide motion[8],
-                                const wide momentum[8])
-{
-    wide step = wide_all(job->step);
-    for (int k = 0; k < 3; k++) {
-        motion[k] = momentum[k] * inertia[0];
-        pose[k] = wide_fma(step, motion[k], pose[k]);
-    }
-    wide3 spin = drift(pose + 3, (wide3){momentum[3], momentum[4], momentum[5]}, inertia, step);
-    motion[3] = spin.x;
-    motion[4] = spin.y;
-    motion[5] = spin.z;
-}
-
-/// `other`: how to move on, where that is not the default; the kernels know only that one.
+/// `other`: how to move on, where that is not by central differences and lsym; the kernels know only these.
 DEM_INLINE void move_bodies(const dem_rows *rows, dem_motion_job *job, const bool damped, const bool bounded,
                             motion_advance *const other)
 {
@@ -322,19 +306,29 @@ DEM_INLINE void move_bodies(const dem_rows *rows, dem_motion_job *job, const boo
         momentum[0] = momentum[0] + weight.x;
         momentum[1] = momentum[1] + weight.y;
         momentum[2] = momentum[2] + weight.z;
-        if (other)
+        wide3 spin;
+        if (other) {
             other(job, i, was, inertia, pose, motion, momentum);
-        else
-            advance_central(job, inertia, pose, motion, momentum);
+            spin = (wide3){motion[3], motion[4], motion[5]};
+        } else {
+            for (int k = 0; k < 3; k++) {
+                motion[k] = momentum[k] * inertia[0];
+                pose[k] = wide_fma(step, motion[k], pose[k]);
+            }
+            spin = drift(pose + 3, (wide3){momentum[3], momentum[4], momentum[5]}, inertia, step);
+        }
         // to the first order: what a step adds to |q| - 1 is of the last bits
         wide norm = wide_all(1.5) -
                     wide_all(0.5) * (pose[3] * pose[3] + pose[4] * pose[4] + pose[5] * pose[5] + pose[6] * pose[6]);
         for (int k = 3; k < 7; k++)
             pose[k] = pose[k] * norm;
+        motion[3] = spin.x;
+        motion[4] = spin.y;
+        motion[5] = spin.z;
         motion[6] = inertia[0];
         motion[7] = inertia[6];
-        wide3 v = {motion[0], motion[1], motion[2]}, spin = {motion[3], motion[4], motion[5]};
         wide turning = dot3(spin, spin) * (inertia[4] * inertia[4]);
+        wide3 v = {motion[0], motion[1], motion[2]};
         wide speed2 = dot3(v, v) + turning;
         wide path = wide_fma(step, wide_sqrt(speed2 + speed2), wide_load(job->path + i));
         wide_store(job->path + i, path);

@@ -7,6 +7,7 @@
 #include "sim/bodies.h"
 #include "sim/bonds.h"
 #include "sim/contacts.h"
+#include "sim/population.h"
 #include "sim/schemes.h"
 #include "sim/timestep.h"
 
@@ -48,6 +49,11 @@ static void put_kernel(dem_buffer *out, const dem_world *w)
     dem_buffer_print(out, "kernel: %s (%s)", w->instance->name, set);
     dem_buffer_text(out,
                     w->instance->any ? ", which asks for each feature as it goes\n" : ", made for these features\n");
+    if (w->laws.plugin.table) {
+        const dem_law_spec *spec = w->laws.plugin.table->spec;
+        dem_buffer_print(out, "law: %s, version %u, of a plug-in with %u numbers; it remembers %u of each contact\n",
+                         spec->name, spec->version, spec->parameter_count, 3u * spec->vectors + spec->numbers);
+    }
     dem_buffer_text(out, "features:\n");
     bool some = false;
 #define FEATURE(name, about)                                                                                           \
@@ -89,13 +95,41 @@ static void put_held(dem_buffer *out, const dem_world *w)
     dem_buffer_text(out, "\n");
 }
 
+// of triangles; the rest of the form is smooth
+static size_t count_meshes(const dem_world *w)
+{
+    size_t count = 0;
+    for (size_t i = 0; i < w->walls.count; i++)
+        count += w->walls.items[i].mesh != NULL;
+    return count;
+}
+
+static void put_walls(dem_buffer *out, const dem_world *w)
+{
+    size_t meshes = count_meshes(w), smooth = count_walls(w, DEM_FORM_MESH) - meshes, servos = 0;
+    for (size_t i = 0; i < w->walls.count; i++)
+        servos += w->walls.items[i].servo.on;
+    if (meshes)
+        dem_buffer_text(out, "  mesh contacts: exact closest points on the listed triangles\n");
+    if (smooth)
+        dem_buffer_print(out, "  contacts of %zu cones, spheres, discs and rectangles: exact closest points\n", smooth);
+    if (w->walls.count)
+        dem_buffer_print(out, "  walls: %zu planes, %zu cylinders, %zu meshes\n", count_walls(w, DEM_FORM_PLANE),
+                         count_walls(w, DEM_FORM_CYLINDER), meshes);
+    if (servos)
+        dem_buffer_print(out, "  %zu servo walls: sums of their contacts, then a velocity\n", servos);
+    if (w->walls.wear)
+        dem_buffer_print(out, "  wear of walls, %s\n",
+                         w->walls.rub ? "by the force and path of each contact" : "when a body begins to touch");
+}
+
 static void put_motion(dem_buffer *out, const dem_world *w, size_t isotropic)
 {
     const dem_scheme *t = &dem_translations[w->integrator.translation], *r = &dem_rotations[w->integrator.rotation];
     dem_buffer_print(out, "  motion: %s, ",
                      w->integrator.translation == DEM_TRANSLATION_CENTRAL ? "central differences" : t->about);
     bool lsym = w->integrator.rotation == DEM_ROTATION_LSYM;
-    if (lsym && isotropic == w->bodies.count)
+    if (lsym && isotropic == w->bodies.living)
         dem_buffer_text(out, "isotropic rotation (all bodies have three equal moments)\n");
     else if (lsym && isotropic)
         dem_buffer_print(out, "rotation by lsym, isotropic for %zu bodies\n", isotropic);
@@ -110,6 +144,18 @@ static void put_motion(dem_buffer *out, const dem_world *w, size_t isotropic)
                          r->number);
     if (w->held)
         put_held(out, w);
+}
+
+static void put_population(dem_buffer *out, const dem_world *w)
+{
+    const dem_population *p = w->population;
+    if (p->inlet_count)
+        dem_buffer_print(out,
+                         "  %zu inlet%s: rows for %zu bodies now, more when they are taken; every body that comes makes a "
+                         "search due\n",
+                         p->inlet_count, p->inlet_count == 1 ? "" : "s", w->bodies.count);
+    if (w->domain.leaving == DEM_LEAVING_DELETE)
+        dem_buffer_text(out, "  bodies outside of the domain are deleted, after each search\n");
 }
 
 static void put_bonds(dem_buffer *out, const dem_world *w)
@@ -133,21 +179,17 @@ static void put_bonds(dem_buffer *out, const dem_world *w)
 
 static void put_passes(dem_buffer *out, const dem_world *w)
 {
-    size_t isotropic = 0, meshes = count_walls(w, DEM_FORM_MESH);
+    size_t isotropic = 0, meshes = count_meshes(w);
     for (size_t row = 0; row < w->bodies.count; row++)
-        isotropic += w->bodies.inertia[DEM_ROW * row + 7] > 0;
+        isotropic += !body_absent(&w->bodies, row) && w->bodies.inertia[DEM_ROW * row + 7] > 0;
     dem_buffer_text(out, "passes of a step:\n");
     if (w->walls.move)
         dem_buffer_text(out, "  walls move to their place\n");
-    if (meshes)
-        dem_buffer_text(out, "  mesh contacts: exact closest points on the listed triangles\n");
     if (w->features.weighted)
         dem_buffer_text(out, "  weights of contacts that stand for the same pair\n");
     if (w->features.soft)
         dem_buffer_text(out, "  walls and pairs are soft: sums over the spheres of each pair, then one law for all of them\n");
-    if (w->walls.count)
-        dem_buffer_print(out, "  walls: %zu planes, %zu cylinders, %zu meshes\n", count_walls(w, DEM_FORM_PLANE),
-                         count_walls(w, DEM_FORM_CYLINDER), meshes);
+    put_walls(out, w);
     dem_buffer_text(out, "  contacts of pairs\n");
     if (w->segment_count * DEM_SEGMENT > w->domain_bodies)
         dem_buffer_print(out, "  momenta across domains of %zu bodies\n", w->domain_bodies);
@@ -159,6 +201,8 @@ static void put_passes(dem_buffer *out, const dem_world *w)
     if (w->bodies.fluid)
         dem_buffer_print(out, "  drag of a fluid on each body, within the kick%s\n",
                          w->damping.drag.buoyancy ? ", and buoyancy" : "");
+    if (w->population)
+        put_population(out, w);
     dem_buffer_text(out, "  lists, when bodies have moved: search, refresh, rebuild\n");
     dem_buffer_print(out, "libraries: %s\n",
                      meshes ? "Embree, for triangles near a body" : "none (Embree is not started)");
@@ -198,8 +242,8 @@ dem_status dem_world_explain(dem_world *w, char **text, dem_error *error)
     dem_buffer out = {0};
     size_t spheres = 0;
     for (size_t row = 0; row < w->bodies.count; row++)
-        spheres += w->templates.items[w->bodies.shape[row]].count;
-    dem_buffer_print(&out, "%zu bodies of %zu spheres in all, %zu shapes, %zu walls, %d threads\n", w->bodies.count,
+        spheres += body_absent(&w->bodies, row) ? 0 : w->templates.items[w->bodies.shape[row]].count;
+    dem_buffer_print(&out, "%zu bodies of %zu spheres in all, %zu shapes, %zu walls, %d threads\n", w->bodies.living,
                      spheres, w->shape_count, w->walls.count, w->threads);
     put_bodies(&out, w);
     put_contacts(&out, w, -1, "of a pair");
@@ -239,5 +283,6 @@ double dem_world_bytes_per_body(const dem_world *w)
     bytes += (double)w->segment_count * (sizeof(dem_segment) * 2 + sizeof(dem_tally) * (1 + DEM_WALL_FORMS));
     if (w->bonds)
         bytes += dem_bonds_bytes(w->bonds);
+    n = w->bodies.living;
     return n ? bytes / (double)n : 0;
 }

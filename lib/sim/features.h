@@ -26,6 +26,9 @@
     X(jkr, "adhesion that deforms the surfaces, remembered by each contact")                                           \
     X(bonded, "surfaces that hold until they break, remembered by each contact")                                       \
     X(dmt, "a constant adhesion")                                                                                      \
+    X(user, "a law of the user's")                                                                                     \
+    X(user_reaches, "that may hold surfaces beyond the touch")                                                         \
+    X(user_turns, "that has moments")                                                                                  \
     X(offset, "spheres away from the centre of their body")                                                            \
     X(scaled, "bodies that scale their shape")                                                                         \
     X(periodic, "images across periodic sides")                                                                        \
@@ -41,12 +44,23 @@ typedef struct dem_features {
 #define FIELD(name, about) bool name;
     DEM_FEATURES(FIELD)
 #undef FIELD
+    unsigned char user_vectors, user_numbers;  // that it remembers
 } dem_features;
+
+enum { DEM_USER_COLUMNS = 20 };  // of what it remembers, at most
 
 /// Whether contacts have moments of their own.
 static inline bool features_turning(dem_features f)
 {
-    return f.rolling || f.roll_constant || f.twisting || f.twist_constant;
+    return f.rolling || f.roll_constant || f.twisting || f.twist_constant || f.user_turns;
+}
+
+/// Those by which a plug-in's kernels are chosen: the others are the plug-in's own.
+static inline dem_features features_for_plugin(dem_features f)
+{
+    f.user_reaches = f.user_turns = false;
+    f.user_vectors = f.user_numbers = 0;
+    return f;
 }
 
 /// The numbers of one law, a row of 32.
@@ -84,7 +98,8 @@ typedef enum dem_law_slot {
     LAW_BOND_SHEAR,             ///< largest tangential force [N]
     LAW_BOND_GAP,               ///< surfaces nearer than this are bonded at the start; -INFINITY: none [m]
     LAW_BOND_AGAIN,             ///< 1: whenever they touch [-]
-    LAW_SLOTS = 32
+    LAW_USER,                   ///< 1: a law of the user's, whose numbers stand apart [-]
+    LAW_SLOTS = 40
 } dem_law_slot;
 
 #endif

@@ -39,6 +39,13 @@ static dem_status check_entry(const dem_mix_def *mix, size_t at, const dem_fill_
     return DEM_OK;
 }
 
+struct dem_fill_drawer {
+    entry *entries;
+    size_t count;
+    bool by_mass;
+    double given;  // bodies or kilograms
+};
+
 static dem_status make_entries(const dem_fill_def *fill, const dem_fill_shape *shapes, size_t shape_count,
                                entry *entries, dem_error *error)
 {
@@ -104,25 +111,61 @@ static dem_fill_draw draw(entry *e)
     return (dem_fill_draw){e->shape_index, diameter / e->shape->equivalent_diameter};
 }
 
-// `target`: volume of solids to come near to [m^3]; INFINITY: fill->count tells
-static dem_status draw_all(const dem_fill_def *fill, entry *entries, double target, dem_fill_draw **draws,
-                           size_t *count, dem_error *error)
+dem_status dem_fill_drawer_create(const dem_fill_def *fill, const dem_fill_shape *shapes, size_t shape_count,
+                                  dem_fill_drawer **drawer, dem_error *error)
 {
-    double given = 0, volume = 0;
+    dem_fill_drawer *d = *drawer = dem_alloc_zero(1, sizeof *d);
+    if (!d)
+        return dem_fail_memory(error);
+    d->count = fill->mix_count;
+    d->by_mass = fill->share_by_mass;
+    d->entries = dem_alloc_zero(fill->mix_count, sizeof *d->entries);
+    return d->entries ? make_entries(fill, shapes, shape_count, d->entries, error) : dem_fail_memory(error);
+}
+
+void dem_fill_drawer_destroy(dem_fill_drawer *d)
+{
+    for (size_t i = 0; d && d->entries && i < d->count; i++)
+        dem_sizes_release(&d->entries[i].sizes);
+    if (d)
+        free(d->entries);
+    free(d);
+}
+
+dem_fill_draw dem_fill_drawer_next(dem_fill_drawer *d)
+{
+    // by number one body more is to be given, so the shares of that
+    entry *e = next_entry(d->entries, d->count, d->by_mass ? d->given : d->given + 1);
+    dem_fill_draw next = draw(e);
+    double amount = d->by_mass ? e->shape->mass * fill_bulk(e->shape, next.scale) : 1;
+    e->given += amount;
+    d->given += amount;
+    return next;
+}
+
+bool dem_fill_drawer_quantile(const dem_fill_drawer *d, size_t of, double u, dem_fill_draw *out)
+{
+    if (of >= d->count)
+        return false;
+    const entry *e = &d->entries[of];
+    *out = (dem_fill_draw){e->shape_index, dem_sizes_draw(&e->sizes, u) / e->shape->equivalent_diameter};
+    return true;
+}
+
+// `target`: volume of solids to come near to [m^3]; INFINITY: fill->count tells
+static dem_status draw_all(const dem_fill_def *fill, dem_fill_drawer *drawer, const dem_fill_shape *shapes,
+                           double target, dem_fill_draw **draws, size_t *count, dem_error *error)
+{
+    double volume = 0;
     size_t capacity = 0;
     while (isfinite(target) ? volume < target : *count < fill->count) {
-        // by number one body more is to be given, so the shares of that
-        entry *e = next_entry(entries, fill->mix_count, fill->share_by_mass ? given : given + 1);
         if (!dem_grow(draws, &capacity, *count, sizeof **draws))
             return dem_fail_memory(error);
         if (*count >= INT32_MAX)
             return dem_fail(error, DEM_USAGE, "fill: more than 2147483647 bodies; use a smaller box or larger bodies");
-        dem_fill_draw d = draw(e);
-        double amount = fill->share_by_mass ? e->shape->mass * fill_bulk(e->shape, d.scale) : 1,
-               part = e->shape->volume * fill_bulk(e->shape, d.scale);
+        dem_fill_draw d = dem_fill_drawer_next(drawer);
+        double part = shapes[d.shape].volume * fill_bulk(&shapes[d.shape], d.scale);
         (*draws)[(*count)++] = d;
-        e->given += amount;
-        given += amount;
         volume += part;
         // the last one only where it comes nearer
         if (isfinite(target) && volume > target && volume - target > target - (volume - part) && *count > 1)
@@ -149,19 +192,15 @@ dem_status dem_fill_draws(const dem_fill_def *fill, const dem_fill_shape *shapes
     *draws = NULL;
     *count = 0;
     DEM_TRY(check(fill, error));
-    entry *entries = dem_alloc_zero(fill->mix_count, sizeof *entries);
-    if (!entries)
-        return dem_fail_memory(error);
-    dem_status status = make_entries(fill, shapes, shape_count, entries, error);
+    dem_fill_drawer *drawer;
+    dem_status status = dem_fill_drawer_create(fill, shapes, shape_count, &drawer, error);
     if (status == DEM_OK) {
         if (fill->count > 0 && !fill->share_by_mass)
-            apportion(entries, fill->mix_count, fill->count);
+            apportion(drawer->entries, fill->mix_count, fill->count);
         double target = fill->count > 0 ? INFINITY : dem_fill_box_volume(fill) / (1 + fill->void_ratio);
-        status = draw_all(fill, entries, target, draws, count, error);
+        status = draw_all(fill, drawer, shapes, target, draws, count, error);
     }
-    for (size_t i = 0; i < fill->mix_count; i++)
-        dem_sizes_release(&entries[i].sizes);
-    free(entries);
+    dem_fill_drawer_destroy(drawer);
     if (status != DEM_OK) {
         free(*draws);
         *draws = NULL;

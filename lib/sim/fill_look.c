@@ -2,6 +2,7 @@
 #include "base/memory.h"
 #include "math/quat.h"
 #include "sim/fill_room.h"
+#include "sim/surface.h"
 
 static double squared(double x)
 {
@@ -14,6 +15,10 @@ static double wall_clearance(const dem_wall_def *wall, dem_vec3 centre, double r
     double along = v3_dot(d, wall->normal);
     if (wall->kind == DEM_WALL_PLANE)
         return along - radius;
+    if (wall->kind != DEM_WALL_CYLINDER) {
+        dem_surface surface = dem_surface_of(wall);
+        return dem_surface_distance(&surface, centre) - radius;
+    }
     double off = v3_norm(v3_along(d, -along, wall->normal));
     return (wall->outside ? off - wall->radius : wall->radius - off) - radius;
 }

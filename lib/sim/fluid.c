@@ -48,7 +48,7 @@ void dem_fluid_push(dem_world *w, size_t begin, size_t end, double kick)
     for (size_t row = begin; row < end && row < b->count; row++) {
         double *p = b->momentum + DEM_ROW * row, *note = b->fluid + 4 * row;
         const double *inertia = b->inertia + DEM_ROW * row, *motion = body_pose(b, row) + 8;
-        if (body_hold(b, row) & DEM_HOLD_VELOCITY)
+        if (body_absent(b, row) || (body_hold(b, row) & DEM_HOLD_VELOCITY))
             continue;
         dem_vec3 momentum = v3_along(v3(p[0], p[1], p[2]), kick * inertia[5], w->gravity);
         dem_vec3 ahead = unlocked_velocity(v3_scale(momentum, inertia[0]), body_hold(b, row));

@@ -24,7 +24,8 @@ typedef struct dem_rows {
     const double *inertia;  ///< [8 a body]
     const double *spheres;  ///< [4 a sphere] x y z r of all shapes, run frame [m]
     const double *shifts;   ///< [4 an image] where images stand off [m]
-    const double *laws;     ///< [16 a law]
+    const double *laws;     ///< [LAW_SLOTS a law]
+    const double *parameters;  ///< [32 a law] of the user's; NULL: there is none
     const double *walls;    ///< [16 a wall] see wall.h
 } dem_rows;
 
@@ -62,6 +63,8 @@ typedef struct dem_contact_columns {
     double *bond;                   ///< 1: bonded, -1: broken [-] (bonded)
     double *attached;               ///< 1: surfaces hold on to each other [-] (jkr), or the patch touches (soft)
     double *drag[3];                ///< moment not of the springs in the last step [N m] (ledger, with any of these)
+    double *user[DEM_USER_COLUMNS];  ///< what a law of the user's remembers (user)
+    double *user_was[7];             ///< its force, moment and energy in the last step [N, N m, J] (user, ledger)
     double *loss;                   ///< elastic force that was not passed on in the last step [N] (ledger, damped)
     double *reaction[3];            ///< force of the wall on the body [N] (walls, reaction)
     double *hardness;               ///< stiffness and dashpot over the step [N/m] (walls, reaction)
@@ -80,6 +83,7 @@ typedef struct dem_contact_job {
 
 typedef void (*dem_contact_kernel)(dem_features f, const dem_rows *rows, const dem_contact_job *job);
 
+/// Contacts of the form MESH are measured in plain doubles before the pass: those of meshes, and of surfaces (surface.h).
 typedef enum dem_wall_form { DEM_FORM_PLANE, DEM_FORM_CYLINDER, DEM_FORM_MESH, DEM_WALL_FORMS } dem_wall_form;
 
 /// A kernel made for one set of features; the last of a set of instances serves all others.
@@ -89,6 +93,11 @@ typedef struct dem_contact_instance {
     bool any;
     dem_contact_kernel pairs, walls[DEM_WALL_FORMS];
 } dem_contact_instance;
+
+/// Tells plug-ins that were made with other loops.
+#define DEM_USER_SIZES                                                                                                 \
+    ((uint32_t)(sizeof(dem_contact_job) + 1000 * sizeof(dem_rows) + 100000 * sizeof(dem_contact_record) +              \
+                10000000 * (sizeof(dem_contact_instance) + sizeof(dem_features)) + LAW_SLOTS))
 
 /// Energy that the motion of bodies has taken out and put in, in lanes [J].
 typedef struct dem_motion_tally {
@@ -174,6 +183,6 @@ const dem_kernels *dem_kernels_choose(const char *name);
 extern const dem_kernels dem_kernels_plain, dem_kernels_v3, dem_kernels_v4;
 
 /// The kernel made for these features, or the one for any.
-const dem_contact_instance *dem_kernels_instance(const dem_kernels *kernels, dem_features features);
+const dem_contact_instance *dem_kernels_instance(const dem_contact_instance *instances, dem_features features);
 
 #endif

@@ -12,9 +12,9 @@ const dem_kernels *dem_kernels_choose(const char *name)
     return level < 0 ? NULL : sets[level];
 }
 
-const dem_contact_instance *dem_kernels_instance(const dem_kernels *kernels, dem_features features)
+const dem_contact_instance *dem_kernels_instance(const dem_contact_instance *instances, dem_features features)
 {
-    const dem_contact_instance *i = kernels->instances;
+    const dem_contact_instance *i = instances;
     while (!i->any && memcmp(&i->features, &features, sizeof features) != 0)
         i++;
     return i;

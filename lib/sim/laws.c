@@ -201,14 +201,81 @@ static dem_status fill_cohesion(const dem_scene *scene, const dem_pair_law *law,
     return DEM_OK;
 }
 
-static uint32_t row_equal_to(dem_laws *laws, const double row[LAW_SLOTS])
+// ---- laws of the user's
+
+// one plug-in a scene: it brings the loops
+static dem_status open_plugin(const dem_scene *scene, const dem_pair_law *law, dem_laws *laws, dem_error *error)
+{
+    dem_plugin plugin;
+    if (!law->plugin)
+        return refuse(scene, law, "is of a plug-in, but names none; give \"plugin\"", error);
+    DEM_TRY(dem_plugin_open(law->plugin, &plugin, error));
+    if (!laws->plugin.table) {
+        laws->plugin = plugin;
+        laws->parameters = dem_alloc_zero(DEM_LAW_PARAMETERS * (scene->law_count + 1), sizeof *laws->parameters);
+        return laws->parameters ? DEM_OK : dem_fail_memory(error);
+    }
+    bool same = plugin.table == laws->plugin.table;
+    dem_plugin_close(&plugin);
+    return same ? DEM_OK : refuse(scene, law, "is of another plug-in than the others; write both laws in one", error);
+}
+
+static dem_status fill_user(const dem_scene *scene, const dem_pair_law *law, dem_laws *laws, double *row,
+                            double parameters[DEM_LAW_PARAMETERS], dem_error *error)
+{
+    if (scene->multiple == DEM_MULTIPLE_SOFT)
+        return refuse(scene, law, "is of a plug-in, for which \"contacts_between_clumps\" cannot be \"soft\"", error);
+    DEM_TRY(open_plugin(scene, law, laws, error));
+    const dem_law_table *t = laws->plugin.table;
+    const dem_law_spec *spec = t->spec;
+    for (uint32_t i = 0; i < spec->parameter_count; i++) {
+        parameters[i] = spec->parameters[i].fallback;
+        for (size_t k = 0; k < law->parameter_count; k++)
+            if (strcmp(law->parameters[k].name, spec->parameters[i].name) == 0)
+                parameters[i] = law->parameters[k].value;
+        if (isnan(parameters[i]))
+            return dem_fail(error, DEM_BAD_INPUT, "the law %s needs \"%s\"; add it", spec->name,
+                            spec->parameters[i].name);
+    }
+    row[LAW_KEEP_LEAST] = row[LAW_KEEP_MOST] = row[LAW_USER] = 1;
+    row[LAW_FLOOR] = row[LAW_BOND_GAP] = -INFINITY;
+    dem_features *needs = &laws->needs;
+    needs->user = true;
+    needs->user_reaches = t->reach;
+    needs->user_turns = spec->turns;
+    needs->user_vectors = spec->vectors;
+    needs->user_numbers = spec->numbers;
+    return DEM_OK;
+}
+
+static uint32_t row_equal_to(dem_laws *laws, const double row[LAW_SLOTS], const double parameters[DEM_LAW_PARAMETERS])
 {
     uint32_t i = 0;
-    while (i < laws->count && memcmp(laws->rows + (size_t)LAW_SLOTS * i, row, LAW_SLOTS * sizeof *row) != 0)
-        i++;
-    if (i == laws->count)
-        memcpy(laws->rows + (size_t)LAW_SLOTS * laws->count++, row, LAW_SLOTS * sizeof *row);
+    size_t bytes = DEM_LAW_PARAMETERS * sizeof *parameters;
+    for (; i < laws->count; i++) {
+        bool same = memcmp(laws->rows + (size_t)LAW_SLOTS * i, row, LAW_SLOTS * sizeof *row) == 0;
+        if (same && laws->parameters)
+            same = memcmp(laws->parameters + (size_t)DEM_LAW_PARAMETERS * i, parameters, bytes) == 0;
+        if (same)
+            return i;
+    }
+    memcpy(laws->rows + (size_t)LAW_SLOTS * i, row, LAW_SLOTS * sizeof *row);
+    if (laws->parameters)
+        memcpy(laws->parameters + (size_t)DEM_LAW_PARAMETERS * i, parameters, bytes);
+    laws->count++;
     return i;
+}
+
+static dem_status fill_law(const dem_scene *scene, const dem_pair_law *law, dem_laws *laws, double *row,
+                           dem_error *error)
+{
+    dem_features *needs = &laws->needs;
+    DEM_TRY(fill_normal(scene, law, row, needs, error));
+    fill_damping(law, row, needs);
+    DEM_TRY(fill_friction(scene, law, row, needs, error));
+    fill_rolling(law, row, needs);
+    DEM_TRY(fill_twisting(scene, law, row, needs, error));
+    return fill_cohesion(scene, law, row, needs, error);
 }
 
 static dem_status add_law(const dem_scene *scene, const dem_pair_law *law, dem_laws *laws, dem_error *error)
@@ -218,15 +285,13 @@ static dem_status add_law(const dem_scene *scene, const dem_pair_law *law, dem_l
         return dem_fail(error, DEM_BAD_INPUT, "a contact names a material that is not there; correct it");
     if (!dem_scene_can_meet(scene, a, b))
         return DEM_OK;
-    double row[LAW_SLOTS] = {0};
+    double row[LAW_SLOTS] = {0}, parameters[DEM_LAW_PARAMETERS] = {0};
     dem_features *needs = &laws->needs;
-    DEM_TRY(fill_normal(scene, law, row, needs, error));
-    fill_damping(law, row, needs);
-    DEM_TRY(fill_friction(scene, law, row, needs, error));
-    fill_rolling(law, row, needs);
-    DEM_TRY(fill_twisting(scene, law, row, needs, error));
-    DEM_TRY(fill_cohesion(scene, law, row, needs, error));
-    if (row[LAW_RATE] > 0 || row[LAW_ZETA] > 0 || row[LAW_SLIDE_RATE] > 0) {
+    if (law->normal == DEM_NORMAL_PLUGIN)
+        DEM_TRY(fill_user(scene, law, laws, row, parameters, error));
+    else
+        DEM_TRY(fill_law(scene, law, laws, row, error));
+    if (row[LAW_RATE] > 0 || row[LAW_ZETA] > 0 || row[LAW_SLIDE_RATE] > 0 || row[LAW_USER] > 0) {
         bool local = law->effective_mass == DEM_MASS_LOCAL;
         if (laws->damped && needs->local_mass != local)
             return refuse(scene, law, "has another \"effective_mass\" than the others; use one for all", error);
@@ -234,7 +299,7 @@ static dem_status add_law(const dem_scene *scene, const dem_pair_law *law, dem_l
         needs->local_mass = local;
     }
     size_t n = laws->material_count;
-    laws->table[a * n + b] = laws->table[b * n + a] = row_equal_to(laws, row);
+    laws->table[a * n + b] = laws->table[b * n + a] = row_equal_to(laws, row, parameters);
     return DEM_OK;
 }
 
@@ -270,5 +335,7 @@ dem_status dem_laws_create(const dem_scene *scene, dem_laws *laws, dem_error *er
 void dem_laws_release(dem_laws *laws)
 {
     free(laws->rows);
+    free(laws->parameters);
     free(laws->table);
+    dem_plugin_close(&laws->plugin);
 }

@@ -6,6 +6,7 @@
 
 #include "dem/scene.h"
 #include "sim/features.h"
+#include "sim/plugin.h"
 
 /// Marks a pair of materials that has no law.
 #define DEM_NO_LAW UINT32_MAX
@@ -13,6 +14,8 @@
 typedef struct dem_laws {
     double *rows;     ///< [LAW_SLOTS a law], on 64-byte boundaries
     size_t count;     ///< different rows; equal ones are one
+    double *parameters;  ///< [DEM_LAW_PARAMETERS a law] of the user's; NULL: no law is
+    dem_plugin plugin;   ///< their plug-in
     uint32_t *table;  ///< [materials * materials] row, or DEM_NO_LAW
     size_t material_count;
     dem_features needs;  ///< of all laws together
@@ -49,6 +52,13 @@ static inline double law_bond_reach(const double *law, double area_length)
         return 0;
     double stretch = law[LAW_BOND_TENSION] / law_stiffness(law, area_length, 0);
     return stretch > law[LAW_BOND_GAP] ? stretch : law[LAW_BOND_GAP];
+}
+
+/// The same of a row that is a law of the user's.
+static inline double law_user_reach(const dem_laws *laws, size_t row, double reduced)
+{
+    bool user = laws->plugin.table && laws->plugin.table->reach && laws->rows[LAW_SLOTS * row + LAW_USER] > 0;
+    return user ? laws->plugin.table->reach(laws->parameters + DEM_LAW_PARAMETERS * row, reduced) : 0;
 }
 
 /// Its contact radius where it bears nothing, of JKR (9 pi w R*^2 / (2 E*))^(1/3) [m].

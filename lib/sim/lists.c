@@ -3,6 +3,7 @@
 #include "base/status.h"
 #include "sim/broad.h"
 #include "sim/contacts.h"
+#include "sim/population.h"
 #include "sim/refresh.h"
 #include "sim/servo.h"
 #include "sim/wall_lists.h"
@@ -24,7 +25,7 @@ static dem_status fail_body(const dem_world *w, size_t row, dem_error *error, co
                     w->shape_names[w->bodies.shape[row]], x.x, x.y, x.z, what);
 }
 
-static bool outside(const dem_world *w, size_t row)
+bool dem_lists_outside(const dem_world *w, size_t row)
 {
     dem_vec3 x = body_position(&w->bodies, row);
     for (int k = 0; k < 3; k++)
@@ -37,6 +38,8 @@ static bool outside(const dem_world *w, size_t row)
 static dem_status check_body(const dem_world *w, size_t row, dem_error *error)
 {
     const dem_bodies *b = &w->bodies;
+    if (body_absent(b, row))
+        return DEM_OK;
     if (!finite_body(b, row))
         return fail_body(w, row, error,
                          "is not finite; the run is unstable: take a smaller time step, or look at the contacts there");
@@ -44,9 +47,10 @@ static dem_status check_body(const dem_world *w, size_t row, dem_error *error)
     if (body_stride(b, row, w->next_step) > 2 * size)
         return fail_body(w, row, error,
                          "runs away: it moves by more than its own size in a step; take a smaller time step");
-    if (w->domain.leaving == DEM_LEAVING_ERROR && outside(w, row))
+    if (w->domain.leaving == DEM_LEAVING_ERROR && dem_lists_outside(w, row))
         return fail_body(w, row, error,
-                         "has left the domain; make the domain or the walls larger, or set \"leaving\": \"ignore\"");
+                         "has left the domain; make the domain or the walls larger, or set "
+                         "\"leaving\" to \"ignore\" or \"delete\"");
     return DEM_OK;
 }
 
@@ -56,6 +60,8 @@ static void bound_walls(dem_world *w)
     dem_box box = box_empty();
     double radius = 0;
     for (size_t i = 0; i < w->bodies.count; i++) {
+        if (body_absent(&w->bodies, i))
+            continue;
         box = box_with(box, body_position(&w->bodies, i));
         radius = larger(radius, w->bodies.radius[i]);
     }
@@ -66,31 +72,38 @@ static void bound_walls(dem_world *w)
 
 static bool search_due(const dem_world *w)
 {
+    if (w->population && w->population->search)
+        return true;
     for (size_t k = 0; k < w->asked_count; k++)
         if (!(w->bodies.path[w->asked[k]] - w->bodies.path_then[w->asked[k]] <= w->skin / 2))
             return true;
     return false;
 }
 
+// also the rows that bodies have left, for what lists still have of them
 static void ask_all(dem_world *w)
 {
-    w->asked_count = w->bodies.count;
-    for (size_t i = 0; i < w->asked_count; i++)
-        w->asked[i] = (uint32_t)i;
+    w->asked_count = 0;
+    for (size_t i = 0; i < w->bodies.count; i++)
+        if (!w->bodies.id || w->bodies.id[i] != (uint32_t)DEM_ROW_FREE)
+            w->asked[w->asked_count++] = (uint32_t)i;
 }
 
-dem_status dem_lists_update(dem_world *w, dem_error *error)
+static dem_status search(dem_world *w, dem_error *error)
 {
-    double t0 = dem_clock();
-    for (size_t k = 0; k < w->asked_count; k++)
-        DEM_TRY(check_body(w, w->asked[k], error));
-    if (search_due(w)) {
-        DEM_TRY(dem_broad_search(w, error));
-        w->searches++;
-        if (w->walls.sweep)
-            bound_walls(w);
-        ask_all(w);
-    }
+    DEM_TRY(dem_broad_search(w, error));
+    w->searches++;
+    if (w->walls.sweep)
+        bound_walls(w);
+    ask_all(w);
+    if (w->population)
+        w->population->search = false;
+    return DEM_OK;
+}
+
+// the lists of the bodies that ask
+static dem_status look(dem_world *w, dem_error *error)
+{
     double t1 = dem_clock();
     if (w->walls.count)
         DEM_TRY(dem_wall_refresh(w, error));
@@ -100,7 +113,6 @@ dem_status dem_lists_update(dem_world *w, dem_error *error)
     if (w->features.soft)
         DEM_TRY(dem_soft_reserve(w, error));
     double t3 = dem_clock();
-    w->clocks[DEM_PASS_SEARCH].seconds += t1 - t0;
     w->clocks[DEM_PASS_REFRESH].seconds += t2 - t1;
     w->clocks[DEM_PASS_LISTS].seconds += t3 - t2;
     return DEM_OK;
@@ -108,8 +120,21 @@ dem_status dem_lists_update(dem_world *w, dem_error *error)
 
 dem_status dem_lists_renew(dem_world *w, dem_error *error)
 {
-    for (size_t row = 0; row < w->bodies.count; row++)
-        w->bodies.path_then[row] = -INFINITY;
-    ask_all(w);
-    return dem_lists_update(w, error);
+    double begin = dem_clock();
+    DEM_TRY(search(w, error));
+    w->clocks[DEM_PASS_SEARCH].seconds += dem_clock() - begin;
+    return look(w, error);
+}
+
+dem_status dem_lists_update(dem_world *w, dem_error *error)
+{
+    double begin = dem_clock();
+    for (size_t k = 0; k < w->asked_count; k++)
+        DEM_TRY(check_body(w, w->asked[k], error));
+    bool searched = search_due(w);
+    if (searched)
+        DEM_TRY(search(w, error));
+    w->clocks[DEM_PASS_SEARCH].seconds += dem_clock() - begin;
+    DEM_TRY(look(w, error));
+    return searched && w->population ? dem_population_leave(w, error) : DEM_OK;
 }

@@ -8,7 +8,10 @@
 /// walls and pairs, rebuilds lists. Errors: DEM_FAILED for a body that is not finite, runs away or leaves the domain.
 dem_status dem_lists_update(dem_world *world, dem_error *error);
 
-/// The same for all bodies, with a search for pairs.
+/// A search for pairs, and all lists anew.
 dem_status dem_lists_renew(dem_world *world, dem_error *error);
+
+/// Whether the centre of the body is beyond a side of the domain that is not periodic.
+bool dem_lists_outside(const dem_world *world, size_t row);
 
 #endif

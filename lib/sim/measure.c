@@ -8,13 +8,15 @@
 #include "sim/bonds.h"
 #include "sim/fluid.h"
 #include "sim/motion.h"
+#include "sim/population.h"
+#include "sim/servo.h"
 
-dem_status dem_views_create(dem_world *w, dem_error *error)
+// arrays of the bodies, for as many as there are rows
+static bool make_columns(dem_views *v, size_t n)
 {
-    dem_views *v = &w->views;
-    size_t n = w->bodies.count;
     v->shape = dem_alloc(n, sizeof *v->shape);
     v->coordination = dem_alloc(n, sizeof *v->coordination);
+    v->id = dem_alloc(n, sizeof *v->id);
     v->scale = dem_alloc(n, sizeof *v->scale);
     v->mass = dem_alloc(n, sizeof *v->mass);
     v->position = dem_alloc(n, sizeof *v->position);
@@ -23,23 +25,52 @@ dem_status dem_views_create(dem_world *w, dem_error *error)
     v->force = dem_alloc(n, sizeof *v->force);
     v->moment = dem_alloc(n, sizeof *v->moment);
     v->orientation = dem_alloc(n, sizeof *v->orientation);
-    v->walls = dem_alloc_zero(w->walls.count, sizeof *v->walls);
     v->by_row = dem_alloc(n, sizeof *v->by_row);
-    bool good = v->shape && v->coordination && v->scale && v->mass && v->position && v->velocity && v->spin &&
-                v->force && v->moment && v->orientation && v->walls && v->by_row;
-    if (!good)
+    return v->shape && v->coordination && v->id && v->scale && v->mass && v->position && v->velocity && v->spin &&
+           v->force && v->moment && v->orientation && v->by_row;
+}
+
+static void release_columns(dem_views *v)
+{
+    void *all[] = {v->shape,    v->coordination, v->id,    v->scale,  v->mass,        v->position,
+                   v->velocity, v->spin,         v->force, v->moment, v->orientation, v->by_row};
+    for (size_t i = 0; i < sizeof all / sizeof *all; i++)
+        free(all[i]);
+}
+
+void dem_views_number(dem_world *w)
+{
+    for (size_t row = 0; row < w->bodies.count; row++)
+        w->views.by_row[row] = UINT32_MAX;
+    for (size_t i = 0; i < w->bodies.living; i++)
+        w->views.by_row[w->bodies.place[i]] = (uint32_t)i;
+}
+
+dem_status dem_views_create(dem_world *w, dem_error *error)
+{
+    dem_views *v = &w->views;
+    v->walls = dem_alloc_zero(w->walls.count, sizeof *v->walls);
+    if (!make_columns(v, w->bodies.count) || !v->walls)
         return dem_fail_memory(error);
-    for (size_t i = 0; i < n; i++)
-        v->by_row[w->bodies.place[i]] = (uint32_t)i;
+    dem_views_number(w);
     return DEM_OK;
+}
+
+bool dem_views_grow(dem_world *w)
+{
+    release_columns(&w->views);
+    if (!make_columns(&w->views, w->bodies.count))
+        return false;
+    dem_views_number(w);
+    return true;
 }
 
 void dem_views_release(dem_views *v)
 {
-    void *all[] = {v->shape, v->coordination, v->scale,       v->mass,     v->position, v->velocity, v->spin,
-                   v->force, v->moment,       v->orientation, v->contacts, v->walls,    v->records,  v->by_row};
-    for (size_t i = 0; i < sizeof all / sizeof *all; i++)
-        free(all[i]);
+    release_columns(v);
+    free(v->contacts);
+    free(v->walls);
+    free(v->records);
 }
 
 // ---- evaluating
@@ -48,7 +79,8 @@ void dem_views_release(dem_views *v)
 static bool evaluate(dem_world *w, const dem_contacts *contacts, size_t segment, int form)
 {
     const dem_segment *s = &contacts->segments[segment];
-    const dem_contact_instance *any = &w->kernels->instances[w->kernels->instance_count - 1];
+    size_t instances;
+    const dem_contact_instance *any = world_instances(w, &instances) + (instances - 1);
     dem_rows rows = world_rows(w);
     dem_tally scratch = {0};
     while (w->views.record_capacity < s->end - s->begin)
@@ -100,8 +132,7 @@ static dem_status visit_segments(dem_world *w, dem_contacts *contacts, int form,
 dem_status dem_visit_contacts(dem_world *w, dem_contact_visit visit, void *user, dem_error *error)
 {
     // finds the contacts of meshes as they stand; doing so again in the next step changes nothing
-    if (w->mesh_touches)
-        dem_mesh_touch_measure(w, 0, w->segment_count);
+    DEM_TRY(dem_mesh_touch_measure_all(w, error));
     dem_weigh_contacts(w, 0, w->segment_count);
     DEM_TRY(visit_segments(w, &w->contacts, -1, visit, user, error));
     for (int form = 0; form < DEM_WALL_FORMS; form++)
@@ -314,6 +345,7 @@ static void view_body(dem_world *w, size_t i)
             load[k] = v3_add(load[k], v3_add(d.local[k], d.drag[k]));
     }
     v->shape[i] = w->bodies.shape[row];
+    v->id[i] = w->bodies.id ? w->bodies.id[row] : (uint32_t)i;
     v->scale[i] = body_scale(&w->bodies, row);
     v->mass[i] = body_mass(w, row);
     v->position[i] = wrapped(w, body_position(&w->bodies, row));
@@ -352,7 +384,7 @@ static void gather(dem_world *w)
     dem_vec3 up = v3_norm2(w->gravity) > 0 ? v3_scale(v3_unit(w->gravity), -1) : v3(0, 0, 1), moment = v3(0, 0, 0);
     double mass = 0, touches = 0;
     f->highest = -INFINITY;
-    for (size_t i = 0; i < w->bodies.count; i++) {
+    for (size_t i = 0; i < w->bodies.living; i++) {
         size_t row = w->bodies.place[i];
         view_body(w, i);
         mass += v->mass[i];
@@ -362,9 +394,26 @@ static void gather(dem_world *w)
         f->fastest = fmax(f->fastest, v3_norm(v->velocity[i]) + w->bodies.radius[row] * v3_norm(v->spin[i]));
         f->highest = fmax(f->highest, height_of(w, row, up));
     }
-    f->bodies = w->bodies.count;
+    f->bodies = w->bodies.living;
     f->centre = v3_scale(moment, mass > 0 ? 1 / mass : 0);
-    f->coordination = w->bodies.count ? touches / (double)w->bodies.count : 0;
+    f->coordination = w->bodies.living ? touches / (double)w->bodies.living : 0;
+    if (w->population) {
+        f->came = w->population->came;
+        f->left = w->population->left;
+        f->came_mass = w->population->came_mass;
+        f->left_mass = w->population->left_mass;
+        f->energy.brought = w->population->brought;
+    }
+}
+
+double dem_measure_body(dem_world *w, size_t i)
+{
+    dem_views *v = &w->views;
+    dem_energy *e = &v->figures.energy;
+    *e = v->since = (dem_energy){0};
+    v->force[i] = v->moment[i] = v3(0, 0, 0);
+    view_body(w, i);
+    return e->kinetic + e->rotational + e->potential + v->since.local + v->since.drag - v->since.work;
 }
 
 // ---- the ledger
@@ -398,12 +447,18 @@ dem_energy dem_ledger(const dem_world *w)
     return e;
 }
 
+// dissipated, less what was done
+static double gone_by(const dem_energy *spent)
+{
+    return spent->friction + spent->viscous + spent->broken + spent->local + spent->drag - spent->work;
+}
+
 static void balance(dem_world *w)
 {
     dem_energy *e = &w->views.figures.energy, spent = dem_ledger(w);
     e->elastic = w->views.elastic;
     double now = e->kinetic + e->rotational + e->potential + e->elastic;
-    double gone = spent.friction + spent.viscous + spent.broken + spent.local + spent.drag - spent.work;
+    double gone = gone_by(&spent) - e->brought;
     if (w->steps == 0) {
         // a spring that the first sight of a sliding contact puts in is no energy that was there
         w->energy_start = now + gone;
@@ -417,7 +472,7 @@ static void balance(dem_world *w)
     e->drag = spent.drag;
     e->work = spent.work;
     double most = fmax(fmax(e->kinetic + e->rotational, e->elastic), fabs(e->potential - w->potential_start));
-    most = fmax(most, fmax(fabs(e->work), e->friction + e->viscous + e->broken + e->local + e->drag));
+    most = fmax(most, fmax(fmax(fabs(e->work), fabs(e->brought)), e->friction + e->viscous + e->broken + e->local + e->drag));
     w->views.most_energy = fmax(w->views.most_energy, most);
     double off = now + gone - e->start;
     e->error = NAN;
@@ -431,6 +486,21 @@ static double largest_overlap(const dem_world *w)
     for (size_t i = 0; i < w->segment_count * (1 + DEM_WALL_FORMS); i++)
         largest = fmax(largest, w->tallies[i].overlap_ratio);
     return largest;
+}
+
+// what walls have of themselves
+static void note_walls(dem_world *w)
+{
+    for (size_t i = 0; i < w->walls.count; i++) {
+        const dem_wall *wall = &w->walls.items[i];
+        dem_wall_view *view = &w->views.walls[i];
+        double area = wall->servo.on ? dem_servo_area(&w->walls, i) : 0;
+        view->pressure = area > 0 ? -v3_dot(view->force, wall->servo.direction) / area : NAN;
+        view->wear = wall->worn;
+        view->wear_count = wall->worn_count;
+        for (size_t k = 0; k < wall->worn_count; k++)
+            view->worn += wall->worn[k];
+    }
 }
 
 dem_status dem_world_measure(dem_world *w, dem_error *error)
@@ -454,14 +524,25 @@ dem_status dem_world_measure(dem_world *w, dem_error *error)
         return dem_fail_memory(error);
     if (w->bonds)
         DEM_TRY(dem_bonds_measure(w, error));
+    note_walls(w);
     gather(w);
     balance(w);
     if (w->regions) {
-        dem_body_view bodies = dem_world_bodies(w);
-        dem_regions_measure(w->regions, &bodies, v->contacts, v->contact_count);
+        dem_region_views views = {dem_world_bodies(w), v->contacts, v->contact_count, NULL, 0};
+        if (w->bonds)
+            views.bonds = dem_world_bonds(w, &views.bond_count);
+        dem_regions_measure(w->regions, &views);
     }
     v->figures.largest_overlap_ratio = fmax(largest_overlap(w), v->figures.overlap_ratio);
     w->clocks[DEM_PASS_MEASURE].seconds += dem_clock() - begin;
+    return DEM_OK;
+}
+
+dem_status dem_measure_total(dem_world *w, double *total, dem_error *error)
+{
+    DEM_TRY(dem_world_measure(w, error));
+    const dem_energy *e = &w->views.figures.energy;
+    *total = e->kinetic + e->rotational + e->potential + e->elastic + gone_by(e);
     return DEM_OK;
 }
 
@@ -473,8 +554,8 @@ const dem_figures *dem_world_figures(const dem_world *w)
 dem_body_view dem_world_bodies(const dem_world *w)
 {
     const dem_views *v = &w->views;
-    return (dem_body_view){w->bodies.count, v->shape, v->scale, v->mass,   v->position,    v->orientation,
-                           v->velocity,     v->spin,  v->force, v->moment, v->coordination};
+    return (dem_body_view){w->bodies.living, v->shape, v->scale, v->mass,   v->position,     v->orientation,
+                           v->velocity,      v->spin,  v->force, v->moment, v->coordination, v->id};
 }
 
 const dem_contact *dem_world_contacts(const dem_world *w, size_t *count)

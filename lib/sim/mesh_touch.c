@@ -4,6 +4,7 @@
 #include <string.h>
 
 #include "sim/contacts.h"
+#include "sim/wear.h"
 
 static const double LOOK_AROUND = 0.5;  // of the bounding radius: how far triangles are asked for, at least
 
@@ -63,8 +64,35 @@ static bool search_ball(dem_world *w, size_t row, uint32_t sphere, uint32_t wall
     return touch.count == 0 || add_touch(t, touch);
 }
 
+// the same at a smooth surface, which has no triangles
+static bool search_surface(dem_world *w, size_t row, uint32_t wall, double margin, dem_mesh_touches *t, double *slack)
+{
+    const dem_template *shape = &w->templates.items[w->bodies.shape[row]];
+    const dem_wall *about = &w->walls.items[wall];
+    dem_vec3 centre = wall_from_space(about, body_position(&w->bodies, row));
+    *slack = dem_surface_distance(&about->surface, centre) - w->bodies.radius[row];
+    if (*slack > margin)
+        return true;
+    *slack = INFINITY;
+    for (uint32_t i = shape->first; i < shape->first + shape->count; i++) {
+        dem_ball ball = space_ball(w, row, i);
+        double gap = dem_surface_distance(&about->surface, wall_from_space(about, ball.centre)) - ball.radius;
+        dem_mesh_touch touch = {.a = (uint32_t)row,
+                                .sphere = i,
+                                .wall = wall,
+                                .first = (uint32_t)t->triangle_count,
+                                .slot_count = (uint32_t)dem_surface_most(&about->surface)};
+        if (gap < margin && !add_touch(t, touch))
+            return false;
+        *slack = smaller(*slack, larger(gap, margin));
+    }
+    return true;
+}
+
 bool dem_mesh_touch_search(dem_world *w, size_t row, uint32_t wall, double margin, dem_mesh_touches *t, double *slack)
 {
+    if (!w->walls.items[wall].mesh)
+        return search_surface(w, row, wall, margin, t, slack);
     const dem_template *shape = &w->templates.items[w->bodies.shape[row]];
     double radius = w->bodies.radius[row], look = larger(margin, LOOK_AROUND * radius);
     dem_vec3 centre = wall_from_space(&w->walls.items[wall], body_position(&w->bodies, row));
@@ -138,8 +166,8 @@ static void put_geometry(const dem_contact_columns *c, size_t at, dem_vec3 norma
 }
 
 // springs go to the slots of the contacts that continue theirs
-static void hand_over(const dem_contact_columns *c, const dem_segment *s, dem_mesh_touches *t, dem_mesh_touch *touch,
-                      const dem_mesh_contact *contacts, int count, double reach)
+static void hand_over(const dem_contact_columns *c, const dem_contact_extras *extras, const dem_segment *s,
+                      dem_mesh_touches *t, dem_mesh_touch *touch, const dem_mesh_contact *contacts, int count, double reach)
 {
     int from[DEM_MESH_CONTACTS];
     dem_contact_history old[DEM_MESH_CONTACTS], none = {0};
@@ -150,24 +178,40 @@ static void hand_over(const dem_contact_columns *c, const dem_segment *s, dem_me
         bool goes_on = (int)k < count && from[k] >= 0;
         dem_history_put(c, segment_place(s, touch->slot + k), goes_on ? &old[from[k]] : &none);
     }
+    for (int e = 0; e < extras->count; e++) {
+        double *column = extras->column[e], number[DEM_MESH_CONTACTS];
+        for (uint32_t k = 0; k < touch->slot_count; k++)
+            number[k] = column[segment_place(s, touch->slot + k)];
+        for (uint32_t k = 0; k < touch->slot_count; k++)
+            column[segment_place(s, touch->slot + k)] = (int)k < count && from[k] >= 0 ? number[from[k]] : 0;
+    }
     for (int k = 0; k < count; k++)
         t->last[touch->slot + (uint32_t)k] = contacts[k];
     touch->last_count = (uint32_t)count;
 }
 
-static void measure_touch(dem_world *w, const dem_segment *s, dem_mesh_touches *t, dem_mesh_touch *touch)
+static int find_contacts(const dem_wall *wall, const dem_mesh_touches *t, const dem_mesh_touch *touch, dem_ball ball,
+                         double reach, dem_mesh_contact *contacts)
+{
+    dem_vec3 centre = wall_from_space(wall, ball.centre);
+    if (!wall->mesh)
+        return dem_surface_contacts(&wall->surface, centre, ball.radius + reach, contacts);
+    return dem_mesh_wall_contacts(wall->mesh, t->triangles + touch->first, touch->count, centre, ball.radius + reach,
+                                  contacts, (int)touch->slot_count);
+}
+
+static void measure_touch(dem_world *w, const dem_contact_extras *extras, const dem_segment *s, dem_mesh_touches *t,
+                          dem_mesh_touch *touch)
 {
     const dem_contact_columns *c = &w->wall_contacts[DEM_FORM_MESH].columns;
     const dem_wall *wall = &w->walls.items[touch->wall];
     dem_ball ball = space_ball(w, touch->a, touch->sphere);
     dem_mesh_contact contacts[DEM_MESH_CONTACTS];
-    int count =
-        dem_mesh_wall_contacts(wall->mesh, t->triangles + touch->first, touch->count,
-                               wall_from_space(wall, ball.centre), ball.radius + w->reach + w->ahead, contacts, (int)touch->slot_count);
+    int count = find_contacts(wall, t, touch, ball, w->reach + w->ahead, contacts);
     if (count || touch->last_count) {
         double overlap = count ? larger(ball.radius - contacts[0].distance, 0) : 0;
         double moved = body_stride(&w->bodies, touch->a, w->last_step) + w->sweep_speed * w->last_step;
-        hand_over(c, s, t, touch, contacts, count, moved + 0.1 * sqrt(ball.radius * overlap));
+        hand_over(c, extras, s, t, touch, contacts, count, moved + 0.1 * sqrt(ball.radius * overlap));
     }
     dem_vec3 x = body_position(&w->bodies, touch->a);
     for (uint32_t k = 0; k < touch->slot_count; k++) {
@@ -181,11 +225,47 @@ static void measure_touch(dem_world *w, const dem_segment *s, dem_mesh_touches *
     }
 }
 
+// A body's balls at one wall, from touch k on: where none touched in the last step and one does now, it has struck the
+// wall. Returns the first touch behind them.
+static size_t measure_body(dem_world *w, const dem_contact_extras *extras, size_t segment, size_t k)
+{
+    dem_mesh_touches *t = &w->mesh_touches[segment];
+    const dem_segment *s = &w->wall_contacts[DEM_FORM_MESH].segments[segment];
+    uint32_t row = t->items[k].a, wall = t->items[k].wall;
+    const dem_mesh_contact *deepest = NULL;
+    double most = 0;
+    bool before = false;
+    for (; k < t->count && t->items[k].a == row && t->items[k].wall == wall; k++) {
+        dem_mesh_touch *touch = &t->items[k];
+        double radius = w->templates.spheres[touch->sphere][3] * body_scale(&w->bodies, row);
+        for (uint32_t i = 0; i < touch->last_count; i++)
+            before |= t->last[touch->slot + i].distance < radius;
+        measure_touch(w, extras, s, t, touch);
+        if (touch->last_count && radius - t->last[touch->slot].distance > most) {
+            deepest = &t->last[touch->slot];
+            most = radius - deepest->distance;
+        }
+    }
+    if (deepest && !before && w->walls.items[wall].wear.law == DEM_WEAR_FINNIE)
+        dem_wear_strike(w, segment, row, wall, deepest);
+    return k;
+}
+
 void dem_mesh_touch_measure(dem_world *w, size_t begin, size_t end)
 {
+    dem_contact_extras extras = dem_extras_of(&w->wall_contacts[DEM_FORM_MESH].columns);
     for (size_t i = begin; i < end; i++) {
         dem_mesh_touches *t = &w->mesh_touches[i];
-        for (size_t k = 0; k < t->count; k++)
-            measure_touch(w, &w->wall_contacts[DEM_FORM_MESH].segments[i], t, &t->items[k]);
+        for (size_t k = 0; k < t->count && w->walls.wear;)
+            k = measure_body(w, &extras, i, k);
+        for (size_t k = 0; k < t->count && !w->walls.wear; k++)
+            measure_touch(w, &extras, &w->wall_contacts[DEM_FORM_MESH].segments[i], t, &t->items[k]);
     }
+}
+
+dem_status dem_mesh_touch_measure_all(dem_world *w, dem_error *error)
+{
+    if (w->mesh_touches)
+        dem_mesh_touch_measure(w, 0, w->segment_count);
+    return w->walls.wear ? dem_wear_settle(w, error) : DEM_OK;
 }

@@ -45,4 +45,7 @@ bool dem_mesh_touch_remember(const dem_mesh_touches *old, dem_mesh_touches *touc
 /// again where nothing has moved changes nothing.
 void dem_mesh_touch_measure(dem_world *world, size_t begin, size_t end);
 
+/// The same of all, with the wear that comes of it. Error: DEM_NO_MEMORY.
+dem_status dem_mesh_touch_measure_all(dem_world *world, dem_error *error);
+
 #endif

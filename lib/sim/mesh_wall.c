@@ -33,8 +33,9 @@ static bool prepare(const dem_mesh *mesh, size_t triangle, dem_triangle *t)
     return triangle_prepare(v[corners[0]], v[corners[1]], v[corners[2]], t);
 }
 
-static dem_status drop_degenerate(const dem_ctx *ctx, dem_mesh *mesh, const char *name, dem_error *error)
+static dem_status drop_degenerate(const dem_ctx *ctx, dem_mesh_wall *wall, const char *name, dem_error *error)
 {
+    dem_mesh *mesh = &wall->mesh;
     unsigned char *drop = dem_alloc_zero(mesh->triangle_count, 1);
     if (!drop)
         return dem_fail_memory(error);
@@ -43,7 +44,14 @@ static dem_status drop_degenerate(const dem_ctx *ctx, dem_mesh *mesh, const char
     for (size_t i = 0; i < given; i++)
         drop[i] = !prepare(mesh, i, &t);
     dem_mesh_drop(mesh, drop);
+    uint32_t *kept = dem_arena_take(&wall->memory, mesh->triangle_count + 1, sizeof *kept);
+    for (size_t i = 0, k = 0; kept && i < given; i++)
+        if (!drop[i])
+            kept[k++] = (uint32_t)i;
+    wall->given = kept;
     free(drop);
+    if (!kept)
+        return dem_fail_memory(error);
     size_t dropped = given - mesh->triangle_count;
     if (mesh->triangle_count == 0)
         return dem_fail(error, DEM_BAD_INPUT, "wall %s: none of its %zu triangles has an area; give a mesh with faces",
@@ -78,7 +86,7 @@ static dem_status build(const dem_ctx *ctx, const dem_mesh *mesh, const char *na
     DEM_TRY(check_mesh(mesh, name, error));
     DEM_TRY(dem_ray_create(&wall->rays, error));
     DEM_TRY(dem_mesh_copy(mesh, &wall->mesh, error));
-    DEM_TRY(drop_degenerate(ctx, &wall->mesh, name, error));
+    DEM_TRY(drop_degenerate(ctx, wall, name, error));
     DEM_TRY(dem_mesh_weld_equal(&wall->mesh, &unused, error));
     DEM_TRY(prepare_all(wall, error));
     wall->spots = dem_mesh_spots_choose(NULL);

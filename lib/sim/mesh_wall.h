@@ -27,6 +27,7 @@ typedef struct dem_mesh_wall {
     const dem_triangle *triangles;  ///< [mesh.triangle_count], the numbers that everything below speaks of
     dem_box box;                    ///< of the triangles [m]
     dem_mesh mesh;                  ///< what was given, equal vertices welded, without degenerate triangles
+    const uint32_t *given;          ///< [mesh.triangle_count] which of the triangles as given it was
     dem_ray_scene *rays;
     const dem_mesh_spots *spots;
     dem_arena memory;

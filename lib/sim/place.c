@@ -38,18 +38,9 @@ static dem_status check_body(const dem_scene *scene, const dem_body_def *b, size
 
 // ---- fills
 
-typedef struct placing {
-    const dem_world *w;
-    const dem_scene *scene;
-    dem_fill_shape *shapes;
-    dem_ball *balls;
-    double look;  // how far meshes are asked for [m]
-    dem_ray_list near;
-} placing;
-
-static bool make_shapes(placing *p)
+bool dem_placing_create(const dem_world *w, dem_placing *p)
 {
-    const dem_world *w = p->w;
+    p->w = w;
     p->shapes = dem_alloc_zero(w->shape_count, sizeof *p->shapes);
     p->balls = dem_alloc(w->templates.sphere_count, sizeof *p->balls);
     if (!p->shapes || !p->balls)
@@ -70,17 +61,38 @@ static bool make_shapes(placing *p)
     return true;
 }
 
-// distance of a ball to the nearest triangle, as far as it matters
-static double mesh_clearance(void *user, dem_vec3 centre, double radius)
+void dem_placing_release(dem_placing *p)
 {
-    placing *p = user;
+    free(p->shapes);
+    free(p->balls);
+    free(p->near.items);
+}
+
+// from a wall that is no mesh
+static double smooth_distance(const dem_world *w, size_t wall, dem_vec3 x)
+{
+    const dem_wall *about = &w->walls.items[wall];
+    if (about->form == DEM_FORM_MESH)
+        return dem_surface_distance(&about->surface, wall_from_space(about, x));
+    return dem_wall_distance(&w->walls, wall, x);
+}
+
+double dem_placing_clearance(void *user, dem_vec3 centre, double radius)
+{
+    dem_placing *p = user;
     double least = p->look;
     for (size_t i = 0; i < p->w->walls.count; i++) {
         const dem_wall *wall = &p->w->walls.items[i];
-        if (wall->form != DEM_FORM_MESH || !dem_mesh_wall_near(wall->mesh, centre, least, &p->near))
+        if (!wall->mesh) {
+            if (p->smooth)
+                least = smaller(least, smooth_distance(p->w, i, centre));
             continue;
+        }
+        dem_vec3 x = wall_from_space(wall, centre);
+        if (!dem_mesh_wall_near(wall->mesh, x, least, &p->near))
+            p->failed = true;
         for (size_t k = 0; k < p->near.count; k++) {
-            dem_closest c = triangle_closest(&wall->mesh->triangles[p->near.items[k]], centre);
+            dem_closest c = triangle_closest(&wall->mesh->triangles[p->near.items[k]], x);
             least = smaller(least, sqrt(c.distance2));
         }
     }
@@ -90,13 +102,13 @@ static double mesh_clearance(void *user, dem_vec3 centre, double radius)
 static bool has_meshes(const dem_world *w)
 {
     for (size_t i = 0; i < w->walls.count; i++)
-        if (w->walls.items[i].form == DEM_FORM_MESH)
+        if (w->walls.items[i].mesh)
             return true;
     return false;
 }
 
 // how large the largest body of a fill can be
-static double largest_radius(const placing *p, const dem_fill_def *fill)
+static double largest_radius(const dem_placing *p, const dem_fill_def *fill)
 {
     double largest = 0;
     for (size_t i = 0; i < fill->mix_count; i++) {
@@ -113,12 +125,13 @@ static double largest_radius(const placing *p, const dem_fill_def *fill)
     return largest;
 }
 
-static dem_status add_fill(placing *p, const dem_fill_def *fill, dem_body_def **bodies, size_t *count, dem_error *error)
+static dem_status add_fill(dem_placing *p, const dem_scene *scene, const dem_fill_def *fill, dem_body_def **bodies,
+                           size_t *count, dem_error *error)
 {
     dem_body_def *more;
     size_t added;
     p->look = 2 * (largest_radius(p, fill) + fill->gap);
-    bool flat = p->scene->dimension == 2;
+    bool flat = scene->dimension == 2;
     for (size_t i = 0; flat && i < p->w->shape_count; i++) {
         // the void ratio is one of areas
         double r = p->shapes[i].equivalent_diameter / 2;
@@ -127,11 +140,11 @@ static dem_status add_fill(placing *p, const dem_fill_def *fill, dem_body_def **
     }
     dem_fill_obstacles there = {.bodies = *bodies,
                                 .body_count = *count,
-                                .domain = &p->scene->domain,
+                                .domain = &scene->domain,
                                 .flat = flat,
-                                .walls = p->scene->walls,
-                                .wall_count = p->scene->wall_count,
-                                .clearance = has_meshes(p->w) ? mesh_clearance : NULL,
+                                .walls = scene->walls,
+                                .wall_count = scene->wall_count,
+                                .clearance = has_meshes(p->w) ? dem_placing_clearance : NULL,
                                 .user = p};
     DEM_TRY(dem_fill(p->w->ctx, fill, p->shapes, p->w->shape_count, &there, &more, &added, error));
     dem_body_def *all = realloc(*bodies, (*count + added + 1) * sizeof *all);
@@ -149,7 +162,7 @@ static dem_status add_fill(placing *p, const dem_fill_def *fill, dem_body_def **
 dem_status dem_place_bodies(const dem_world *w, const dem_scene *scene, dem_body_def **bodies, size_t *count,
                             dem_error *error)
 {
-    placing p = {.w = w, .scene = scene};
+    dem_placing p = {0};
     *count = scene->bodies.count;
     *bodies = dem_alloc(*count, sizeof **bodies);
     dem_status status = *bodies ? DEM_OK : dem_fail_memory(error);
@@ -157,15 +170,13 @@ dem_status dem_place_bodies(const dem_world *w, const dem_scene *scene, dem_body
         status = check_body(scene, &scene->bodies.bodies[i], i, error);
         (*bodies)[i] = scene->bodies.bodies[i];
     }
-    if (status == DEM_OK && scene->bodies.fill_count && !make_shapes(&p))
+    if (status == DEM_OK && scene->bodies.fill_count && !dem_placing_create(w, &p))
         status = dem_fail_memory(error);
     for (size_t i = 0; status == DEM_OK && i < scene->bodies.fill_count; i++)
-        status = add_fill(&p, &scene->bodies.fills[i], bodies, count, error);
+        status = add_fill(&p, scene, &scene->bodies.fills[i], bodies, count, error);
     for (size_t i = 0; status == DEM_OK && scene->dimension == 2 && i < *count; i++)
         (*bodies)[i].hold |= DEM_LOCK_PLANE;
-    free(p.shapes);
-    free(p.balls);
-    free(p.near.items);
+    dem_placing_release(&p);
     if (status != DEM_OK) {
         free(*bodies);
         *bodies = NULL;

@@ -31,6 +31,8 @@ double dem_refresh_margin(const dem_world *w, size_t a, size_t b, double strides
 double dem_refresh_limit(const dem_world *w, size_t row)
 {
     const dem_pairs *pairs = &w->pairs;
+    if (body_absent(&w->bodies, row))
+        return INFINITY;
     double limit = w->bodies.path_then[row] + w->skin / 2;
     if (w->bodies.wall_limit && !w->walls.sweep)
         limit = smaller(limit, w->bodies.wall_limit[row]);

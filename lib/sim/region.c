@@ -353,14 +353,31 @@ static void measure_contacts(const dem_regions *r, const dem_measure_def *m, con
     }
 }
 
-void dem_regions_measure(dem_regions *r, const dem_body_view *bodies, const dem_contact *contacts, size_t contact_count)
+static void measure_bonds(const dem_regions *r, const dem_measure_def *m, const dem_region_views *views,
+                          dem_measure_view *v)
 {
+    for (size_t i = 0; i < views->bond_count; i++) {
+        const dem_bond_view *b = &views->bonds[i];
+        if (b->state != DEM_BOND_INTACT)
+            continue;
+        dem_vec3 x = views->bodies.position[b->body], arm = to_nearest(&r->domain, v3_sub(b->point, x));
+        dem_vec3 l = v3_sub(arm, to_nearest(&r->domain, v3_sub(b->point, views->bodies.position[b->other])));
+        double share = share_of(r, m, x, l);
+        if (share > 0)
+            v->stress = sym3_add(v->stress, sym3_scale(sym3_pair(b->force, l), -share));
+    }
+}
+
+void dem_regions_measure(dem_regions *r, const dem_region_views *views)
+{
+    const dem_body_view *bodies = &views->bodies;
     for (size_t i = 0; i < r->count; i++) {
         const dem_measure_def *m = &r->items[i];
         dem_measure_view *v = &r->views[i];
         *v = (dem_measure_view){.volume = volume_of(r, m, bodies)};
         measure_bodies(r, m, bodies, v);
-        measure_contacts(r, m, bodies, contacts, contact_count, v);
+        measure_contacts(r, m, bodies, views->contacts, views->contact_count, v);
+        measure_bonds(r, m, views, v);
         v->stress = sym3_scale(v->stress, v->volume > 0 ? 1 / v->volume : 0);
         v->fabric = sym3_scale(v->fabric, v->contacts ? 1 / (double)v->contacts : 0);
         const dem_sym3 s = v->stress;

@@ -9,6 +9,8 @@
 #include "sim/bonds.h"
 #include "sim/broad.h"
 #include "sim/contacts.h"
+#include "sim/measure.h"
+#include "sim/population.h"
 
 enum { LAYOUT = 1 };
 
@@ -36,7 +38,7 @@ typedef struct block_head {
     uint64_t steps, epoch_steps, step_reviewed;
     double epoch_time, last_step, next_step, wall_path, sweep_speed, sweep_least, push_work;
     double energy_start, potential_start, most_energy, skin;
-    uint64_t pairs;
+    uint64_t pairs, living;
 } block_head;
 
 static uint64_t hash_wall(uint64_t h, const dem_wall *wall)
@@ -54,6 +56,15 @@ static uint64_t hash_wall(uint64_t h, const dem_wall *wall)
                         {s->mass, s->damping_rate, s->partner},
                         {s->extent[0].length, s->extent[1].length, 0}};
     h = hash_bytes(h, more, sizeof more);
+    const dem_wear_def *wear = &wall->wear;
+    double law[] = {wear->law,       wear->constant,    wear->pressure, wear->psi,
+                    wear->roughness, wear->coefficient, wear->hardness, (double)wall->worn_count};
+    h = hash_bytes(h, law, sizeof law);
+    const dem_surface *f = &wall->surface;
+    double form[] = {f->kind, f->begin,   f->run[0],  f->run[1],  f->endless,
+                     f->side, f->half[0], f->half[1], f->along.x, f->along.y,
+                     f->along.z};
+    h = hash_bytes(h, form, sizeof form);
     h = hash_bytes(h, m->oscillations, m->oscillation_count * sizeof *m->oscillations);
     h = hash_bytes(h, m->table.time, m->table.count * sizeof *m->table.time);
     h = hash_bytes(h, m->table.shift, m->table.count * sizeof *m->table.shift);
@@ -70,6 +81,12 @@ static uint64_t hash_constants(const dem_world *w)
         h = hash_bytes(h, numbers, sizeof numbers);
     }
     h = hash_bytes(h, w->laws.rows, w->laws.count * LAW_SLOTS * sizeof(double));
+    if (w->laws.plugin.table) {
+        const dem_law_spec *spec = w->laws.plugin.table->spec;
+        h = hash_bytes(h, spec->name, strlen(spec->name));
+        h = hash_bytes(h, &spec->version, sizeof spec->version);
+        h = hash_bytes(h, w->laws.parameters, w->laws.count * DEM_LAW_PARAMETERS * sizeof(double));
+    }
     h = hash_bytes(h, w->laws.table, w->laws.material_count * w->laws.material_count * sizeof *w->laws.table);
     for (size_t i = 0; i < w->walls.count; i++) {
         const dem_wall *wall = &w->walls.items[i];
@@ -88,8 +105,19 @@ static uint64_t hash_constants(const dem_world *w)
         w->integrator.translation, w->integrator.rotation, w->held,          w->kept,          drag->density,
         drag->viscosity,           drag->velocity.x,       drag->velocity.y, drag->velocity.z, drag->buoyancy};
     h = hash_bytes(h, motion, sizeof motion);
+    for (size_t i = 0; w->population && i < w->population->inlet_count; i++) {
+        const dem_inlet_def *d = &w->population->inlets[i].def;
+        double given[] = {d->kind,       d->low.x,      d->low.y,      d->low.z,           d->high.x, d->high.y,
+                          d->high.z,     d->centre.x,   d->centre.y,   d->centre.z,        d->radius, d->rate,
+                          d->by_mass,    d->velocity.x, d->velocity.y, d->velocity.z,      d->start,  d->stop,
+                          d->spin.x,     d->spin.y,     d->spin.z,     d->velocity_spread, d->gap,    (double)d->count,
+                          d->spin_spread};
+        h = hash_bytes(h, given, sizeof given);
+        h = hash_bytes(h, &d->seed, sizeof d->seed);
+    }
     double numbers[] = {w->time_def.step,      w->multiple,           w->domain.periodic[0],
-                        w->domain.periodic[1], w->domain.periodic[2], w->soft.tau};
+                        w->domain.periodic[1], w->domain.periodic[2], w->soft.tau,
+                        w->domain.leaving == DEM_LEAVING_DELETE};
     h = hash_bytes(h, numbers, sizeof numbers);
     for (size_t i = 0; w->bonds && i < w->bonds->def_count; i++) {
         const dem_bond_def *d = &w->bonds->defs[i];
@@ -132,6 +160,7 @@ static block_head head_of(const dem_world *w)
     h.most_energy = w->views.most_energy;
     h.skin = w->skin;
     h.pairs = w->pairs.count;
+    h.living = w->bodies.living;
     return h;
 }
 
@@ -211,7 +240,7 @@ static void pass_bodies(cursor *c, dem_world *w)
         pass(c, b->name, b->padded *(width) * sizeof(type));
     DEM_BODY_COLUMNS(COLUMN)
 #undef COLUMN
-    pass(c, b->place, b->count * sizeof *b->place);
+    pass(c, b->place, b->living * sizeof *b->place);
 }
 
 static void pass_pairs(cursor *c, dem_world *w)
@@ -293,11 +322,42 @@ static void pass_walls(cursor *c, dem_world *w)
         pass(c, &w->walls.items[i].travel, sizeof(double));
         pass(c, &w->walls.items[i].speed, sizeof(double));
     }
+    for (size_t i = 0; w->walls.wear && i < w->walls.count; i++)
+        pass(c, w->walls.items[i].worn, w->walls.items[i].worn_count * sizeof(double));
+}
+
+// what inlets have done; the mix is drawn anew up to there
+static void pass_population(cursor *c, dem_world *w)
+{
+    dem_population *p = w->population;
+    pass(c, &p->next_id, sizeof p->next_id);
+    pass(c, &p->came, sizeof p->came);
+    pass(c, &p->left, sizeof p->left);
+    pass(c, &p->came_mass, sizeof p->came_mass);
+    pass(c, &p->left_mass, sizeof p->left_mass);
+    pass(c, &p->brought, sizeof p->brought);
+    for (size_t i = 0; i < p->inlet_count; i++) {
+        dem_inlet *inlet = &p->inlets[i];
+        uint64_t drawn = inlet->made;
+        pass(c, &inlet->made, sizeof inlet->made);
+        pass(c, &inlet->mass, sizeof inlet->mass);
+        pass(c, &inlet->again, sizeof inlet->again);
+        pass(c, &inlet->looks, sizeof inlet->looks);
+        pass(c, &inlet->inside, sizeof inlet->inside);
+        if (c->out)
+            continue;
+        c->failed |= inlet->made < drawn || inlet->made > p->next_id ||
+                     (inlet->inside != (uint32_t)DEM_ROW_FREE && inlet->inside >= w->bodies.count);
+        for (; !c->failed && drawn < inlet->made; drawn++)
+            inlet->next = dem_fill_drawer_next(inlet->drawer);
+    }
 }
 
 static void pass_state(cursor *c, dem_world *w)
 {
     pass_walls(c, w);
+    if (w->population)
+        pass_population(c, w);
     pass_bodies(c, w);
     pass_pairs(c, w);
     pass_contacts(c, w, &w->contacts, -1);
@@ -339,8 +399,11 @@ static dem_status refuse(dem_error *error, const char *what)
 static bool sound(const dem_world *w)
 {
     size_t n = w->bodies.count;
+    for (size_t i = 0; i < w->bodies.living; i++)
+        if (w->bodies.place[i] >= n || body_absent(&w->bodies, w->bodies.place[i]))
+            return false;
     for (size_t i = 0; i < n; i++)
-        if (w->bodies.place[i] >= n || w->bodies.shape[i] >= w->shape_count)
+        if (w->bodies.shape[i] >= w->shape_count)
             return false;
     for (size_t i = 0; i < w->pairs.count; i++) {
         const dem_pair *p = &w->pairs.items[i];
@@ -369,16 +432,25 @@ dem_status dem_world_restore(dem_world *w, const void *bytes, size_t size, dem_e
     memcpy(&head, bytes, sizeof head);
     if (head.layout != LAYOUT)
         return refuse(error, "is of another version; run it with the program that wrote it");
+    // a world that bodies come to has grown since
+    if (w->population && head.bodies > own.bodies && head.bodies < INT32_MAX &&
+        head.segments == (head.bodies + DEM_SEGMENT - 1) / DEM_SEGMENT && head.bodies <= size) {
+        DEM_TRY(dem_world_grow(w, head.bodies, error));
+        own = head_of(w);
+    }
     bool same = head.constants == own.constants && head.bodies == own.bodies && head.shapes == own.shapes &&
-                head.walls == own.walls && head.laws == own.laws && head.segments == own.segments &&
+                head.walls == own.walls && head.laws == own.laws && head.segments == own.segments && head.living <= head.bodies &&
+                (w->population || head.living == own.living) &&
                 memcmp(&head.features, &own.features, sizeof own.features) == 0;
     if (!same)
         return refuse(error, "belongs to another scene; resume with the scene it was made from");
     cursor c = {.in = (const char *)bytes + sizeof head, .left = size - sizeof head - sizeof hash};
     take_head(w, &head);
+    w->bodies.living = head.living;
     pass_state(&c, w);
     if (c.failed || c.left || !sound(w))
         return refuse(error, "does not fit the scene; resume with the scene it was made from");
+    dem_views_number(w);
     if (w->bonds && !dem_bonds_list(w))
         return dem_fail_memory(error);
     dem_walls_place(&w->walls, dem_world_time(w));
@@ -398,15 +470,18 @@ uint64_t dem_world_hash(const dem_world *w)
     hash = hash_bytes(hash, b->path, b->count * sizeof *b->path);
     for (size_t i = 0; w->walls.servo && i < w->walls.count; i++)
         hash = hash_bytes(hash, (double[]){w->walls.items[i].travel, w->walls.items[i].speed}, 2 * sizeof(double));
+    for (size_t i = 0; w->walls.wear && i < w->walls.count; i++)
+        hash = hash_bytes(hash, w->walls.items[i].worn, w->walls.items[i].worn_count * sizeof(double));
     for (int form = -1; form < DEM_WALL_FORMS; form++) {
         const dem_contacts *contacts = form < 0 ? &w->contacts : &w->wall_contacts[form];
         for (size_t i = 0; contacts->segments && i < w->segment_count; i++) {
             const dem_segment *s = &contacts->segments[i];
             const dem_contact_columns *c = &contacts->columns;
-            const double *columns[] = {c->spring[0], c->spring[1], c->spring[2], c->bond};
-            for (int k = 0; k < 4; k++)
-                if (columns[k])
-                    hash = hash_bytes(hash, columns[k] + s->begin, (s->end - s->begin) * sizeof(double));
+            for (int k = 0; c->spring[0] && k < 3; k++)
+                hash = hash_bytes(hash, c->spring[k] + s->begin, (s->end - s->begin) * sizeof(double));
+            dem_contact_extras extras = dem_extras_of(c);
+            for (int k = 0; k < extras.count; k++)
+                hash = hash_bytes(hash, extras.column[k] + s->begin, (s->end - s->begin) * sizeof(double));
         }
     }
     for (size_t i = 0; w->bonds && i < w->bonds->count; i++) {

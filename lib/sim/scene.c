@@ -82,7 +82,7 @@ double dem_scene_safety(const dem_scene *scene)
         return scene->time.safety;
     for (size_t i = 0; i < scene->law_count; i++) {
         const dem_pair_law *law = &scene->laws[i];
-        if (dem_law_of_hertz(law) && dem_scene_can_meet(scene, law->materials[0], law->materials[1]))
+        if (law->normal != DEM_NORMAL_LINEAR && dem_scene_can_meet(scene, law->materials[0], law->materials[1]))
             return SAFETY_HERTZ;
     }
     return SAFETY;

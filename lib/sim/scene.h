@@ -28,7 +28,7 @@ bool dem_scene_can_meet(const dem_scene *scene, uint32_t a, uint32_t b);
 /// Whether the elastic part of the normal force is Hertz', or becomes so without adhesion.
 static inline bool dem_law_of_hertz(const dem_pair_law *law)
 {
-    return law->normal != DEM_NORMAL_LINEAR;
+    return law->normal != DEM_NORMAL_LINEAR && law->normal != DEM_NORMAL_PLUGIN;
 }
 
 /// The safety of an automatic step that is not given: 0.8, 0.5 where a Hertz law is in force [-].

@@ -3,6 +3,7 @@
 #include <string.h>
 
 #include "math/vec.h"
+#include "sim/plugin.h"
 #include "sim/scene_reader.h"
 
 // ---- materials
@@ -61,10 +62,19 @@ static dem_status read_restitution(dem_scene_reader *r, const dem_scene_value *v
 
 static const dem_choice normal_laws[] = {{"linear", DEM_NORMAL_LINEAR}, {"hertz", DEM_NORMAL_HERTZ},
                                          {"dmt", DEM_NORMAL_DMT},       {"jkr", DEM_NORMAL_JKR},
-                                         {"plugin", DEM_NOT_BUILT},     {NULL, 0}};
+                                         {NULL, 0}};
 static const dem_choice tails[] = {{"cut_corrected", DEM_TAIL_CUT}, {"tension_allowed", DEM_TAIL_TENSION}, {NULL, 0}};
 
-enum { NORMAL_LAW, NORMAL_STIFFNESS, NORMAL_STIFFNESS_FROM, NORMAL_RESTITUTION, NORMAL_MODE, NORMAL_RATE, NORMAL_WORK };
+enum {
+    NORMAL_LAW,
+    NORMAL_STIFFNESS,
+    NORMAL_STIFFNESS_FROM,
+    NORMAL_RESTITUTION,
+    NORMAL_MODE,
+    NORMAL_RATE,
+    NORMAL_WORK,
+    NORMAL_PLUGIN
+};
 static const dem_field normal_table[] = {
     [NORMAL_LAW] = {"law", dem_field_choice, .at = offsetof(dem_pair_law, normal), .choices = normal_laws},
     [NORMAL_STIFFNESS] = {"stiffness", dem_field_quantity, .at = offsetof(dem_pair_law, stiffness),
@@ -77,7 +87,7 @@ static const dem_field normal_table[] = {
                      .dimension = DEM_DIMENSION_RATE, .range = DEM_RANGE_FROM_0},
     [NORMAL_WORK] = {"work_of_adhesion", dem_field_quantity, .at = offsetof(dem_pair_law, work_of_adhesion),
                      .dimension = DEM_DIMENSION_STIFFNESS, .range = DEM_RANGE_FROM_0},
-    DEM_UNBUILT("plugin"),
+    [NORMAL_PLUGIN] = {"plugin", dem_field_path, .at = offsetof(dem_pair_law, plugin)},
 };
 static const dem_fields normal_fields = DEM_FIELDS(normal_table);
 
@@ -93,10 +103,67 @@ static dem_status check_elastic(dem_scene_reader *r, const dem_scene_value *v, c
     return DEM_OK;
 }
 
+static const char *parameter_name(const void *user, size_t index)
+{
+    const dem_law_spec *spec = user;
+    return index < spec->parameter_count ? spec->parameters[index].name : NULL;
+}
+
+static dem_status read_parameter(dem_scene_reader *r, const dem_scene_value *v, const dem_law_spec *spec,
+                                 dem_law_value *value)
+{
+    const dem_law_parameter *p = spec->parameters, *end = p + spec->parameter_count;
+    while (p < end && strcmp(p->name, value->name) != 0)
+        p++;
+    if (p == end)
+        return dem_scene_unknown(r, v, DEM_JSON_KEY, "parameter", value->name, parameter_name, spec);
+    return dem_read_quantity(r, v, dem_dimension_of(p->unit), (dem_range){.low = p->least, .high = p->most},
+                             &value->value);
+}
+
+static dem_status read_parameters(dem_scene_reader *r, const dem_scene_value *v, const dem_law_spec *spec,
+                                  dem_pair_law *law)
+{
+    dem_law_value *values = dem_scene_take(r, dem_json_length(v->json), sizeof *values);
+    if (!values)
+        return dem_fail_memory(r->error);
+    law->parameters = values;
+    for (const char *key = NULL; (key = dem_json_next(v->json, key));) {
+        if (strcmp(key, "plugin") == 0)
+            continue;
+        dem_scene_value member = dem_scene_member(v, key);
+        values[law->parameter_count] = (dem_law_value){key, 0};
+        DEM_TRY(read_parameter(r, &member, spec, &values[law->parameter_count++]));
+    }
+    for (uint32_t i = 0; i < spec->parameter_count; i++) {
+        const char *name = spec->parameters[i].name;
+        if (isnan(spec->parameters[i].fallback) && !dem_json_member(v->json, name))
+            return dem_scene_refuse(r, v, "add it", "the law %s needs \"%s\"", spec->name, name);
+    }
+    return DEM_OK;
+}
+
+// { "plugin": "law.so", numbers by their names }
+static dem_status read_plugin(dem_scene_reader *r, const dem_scene_value *v, dem_pair_law *law)
+{
+    dem_scene_value path = dem_scene_member(v, "plugin");
+    dem_plugin plugin;
+    dem_error inner;
+    law->normal = DEM_NORMAL_PLUGIN;
+    DEM_TRY(dem_field_path(r, &path, &normal_table[NORMAL_PLUGIN], &law->plugin));
+    if (dem_plugin_open(law->plugin, &plugin, &inner) != DEM_OK)
+        return dem_scene_pass_on(r, &path, &inner);
+    dem_status status = read_parameters(r, v, plugin.table->spec, law);
+    dem_plugin_close(&plugin);
+    return status;
+}
+
 static dem_status read_normal(dem_scene_reader *r, const dem_scene_value *v, const dem_field *field, void *into)
 {
     dem_pair_law *law = into;
     uint64_t given;
+    if (dem_json_member(v->json, "plugin"))
+        return read_plugin(r, v, law);
     DEM_TRY(dem_fields_read(r, v, field->fields, law, &given));
     bool stiffness = dem_given(given, NORMAL_STIFFNESS), from = dem_given(given, NORMAL_STIFFNESS_FROM);
     bool restitution = dem_given(given, NORMAL_RESTITUTION), rate = dem_given(given, NORMAL_RATE);
@@ -182,7 +249,11 @@ static dem_status read_keys(dem_scene_reader *r, const dem_scene_value *v, const
                             uint64_t *given)
 {
     *given = 0;
-    return dem_json_is_null(v->json) ? DEM_OK : dem_fields_read(r, v, field->fields, law, given);
+    if (dem_json_is_null(v->json))
+        return DEM_OK;
+    if (law->normal == DEM_NORMAL_PLUGIN)
+        return dem_scene_refuse(r, v, "leave it out", "the law of a plug-in says all forces");
+    return dem_fields_read(r, v, field->fields, law, given);
 }
 
 static dem_status check_static(dem_scene_reader *r, const dem_scene_value *v, const dem_pair_law *law, uint64_t given)

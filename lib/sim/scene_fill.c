@@ -57,9 +57,9 @@ static dem_status read_passing(dem_scene_reader *r, const dem_scene_value *v, co
 static const dem_choice size_laws[] = {{"fixed", DEM_SIZE_FIXED},   {"uniform", DEM_SIZE_UNIFORM},
                                        {"normal", DEM_SIZE_NORMAL}, {"lognormal", DEM_SIZE_LOGNORMAL},
                                        {"table", DEM_SIZE_TABLE},   {NULL, 0}};
-static const dem_choice shares_by[] = {{"number", false}, {"mass", true}, {NULL, 0}};
+const dem_choice dem_shares_by[] = {{"number", false}, {"mass", true}, {NULL, 0}};
 
-static dem_status read_by(dem_scene_reader *r, const dem_scene_value *v, const dem_field *field, void *into)
+dem_status dem_field_share_by(dem_scene_reader *r, const dem_scene_value *v, const dem_field *field, void *into)
 {
     int by;
     DEM_TRY(dem_field_choice(r, v, field, &by));
@@ -84,7 +84,7 @@ static const dem_field size_table[] = {
     [KEY_SIGMA] = {"sigma", read_sigma, .range = DEM_RANGE_FROM_0},
     [KEY_SIZES] = {"sizes", read_sizes, .dimension = DEM_DIMENSION_LENGTH, .range = DEM_RANGE_POSITIVE},
     [KEY_PASSING] = {"passing", read_passing, .dimension = DEM_DIMENSION_NONE, .range = {.high = 1}},
-    [KEY_BY] = {"by", read_by, .at = offsetof(size_text, size.by_mass), .choices = shares_by},
+    [KEY_BY] = {"by", dem_field_share_by, .at = offsetof(size_text, size.by_mass), .choices = dem_shares_by},
 };
 static const dem_fields size_fields = DEM_FIELDS(size_table);
 
@@ -174,9 +174,9 @@ static const dem_field mix_table[] = {
      .range = DEM_RANGE_POSITIVE},
     {"size", read_size, .at = offsetof(dem_mix_def, size), .fields = &size_fields},
 };
-static const dem_fields mix_fields = DEM_FIELDS(mix_table);
+const dem_fields dem_mix_fields = DEM_FIELDS(mix_table);
 
-static dem_status read_mix(dem_scene_reader *r, const dem_scene_value *v, const dem_field *field, void *into)
+dem_status dem_field_mix(dem_scene_reader *r, const dem_scene_value *v, const dem_field *field, void *into)
 {
     dem_fill_def *fill = into;
     size_t count = dem_json_length(v->json);
@@ -197,7 +197,7 @@ static dem_status read_mix(dem_scene_reader *r, const dem_scene_value *v, const 
 
 // ---- the fill
 
-static dem_status read_box(dem_scene_reader *r, const dem_scene_value *v, const dem_field *field, void *into)
+dem_status dem_field_corners(dem_scene_reader *r, const dem_scene_value *v, const dem_field *field, void *into)
 {
     dem_fill_def *fill = into;
     DEM_TRY(dem_read_array(r, v, 2, "the corners [[x, y, z], [x, y, z]]"));
@@ -213,9 +213,9 @@ static dem_status read_box(dem_scene_reader *r, const dem_scene_value *v, const 
 
 enum { FILL_MIX, FILL_SHARE_BY, FILL_BOX, FILL_COUNT, FILL_VOID_RATIO };
 static const dem_field fill_table[] = {
-    [FILL_MIX] = {"mix", read_mix, .needed = true, .fields = &mix_fields},
-    [FILL_SHARE_BY] = {"share_by", read_by, .at = offsetof(dem_fill_def, share_by_mass), .choices = shares_by},
-    [FILL_BOX] = {"box", read_box, .needed = true, .dimension = DEM_DIMENSION_LENGTH},
+    [FILL_MIX] = {"mix", dem_field_mix, .needed = true, .fields = &dem_mix_fields},
+    [FILL_SHARE_BY] = {"share_by", dem_field_share_by, .at = offsetof(dem_fill_def, share_by_mass), .choices = dem_shares_by},
+    [FILL_BOX] = {"box", dem_field_corners, .needed = true, .dimension = DEM_DIMENSION_LENGTH},
     [FILL_COUNT] = {"count", dem_field_whole, .at = offsetof(dem_fill_def, count), .range = {.low = 1, .high = 4e9}},
     [FILL_VOID_RATIO] = {"void_ratio", dem_field_quantity, .at = offsetof(dem_fill_def, void_ratio),
                          .dimension = DEM_DIMENSION_NONE, .range = DEM_RANGE_POSITIVE},

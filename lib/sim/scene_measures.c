@@ -50,7 +50,7 @@ enum { MEASURE_BOX, MEASURE_BALL, MEASURE_WHOLE };
 static const dem_field measure_table[] = {
     [MEASURE_BOX] = {"box", read_box, .dimension = DEM_DIMENSION_LENGTH, .fields = &corner_fields},
     [MEASURE_BALL] = {"ball", read_ball, .fields = &ball_fields},
-    [MEASURE_WHOLE] = {"whole", read_whole},
+    [MEASURE_WHOLE] = {.name = "whole", .read = read_whole},
     {"kinetic", dem_field_flag, .at = offsetof(dem_measure_def, kinetic)},
 };
 const dem_fields dem_measure_fields = DEM_FIELDS(measure_table);

@@ -64,7 +64,7 @@ static dem_status read_periodic(dem_scene_reader *r, const dem_scene_value *v, c
 
 static const dem_choice leavings[] = {{"error", DEM_LEAVING_ERROR},
                                       {"ignore", DEM_LEAVING_IGNORE},
-                                      {"delete", DEM_NOT_BUILT},
+                                      {"delete", DEM_LEAVING_DELETE},
                                       {"report", DEM_NOT_BUILT},
                                       {NULL, 0}};
 
@@ -233,7 +233,7 @@ static const dem_field scene_table[] = {
     {"shapes", dem_section_shapes, .fields = &dem_shape_fields},
     {"bodies", dem_section_bodies, .fields = &dem_body_fields},
     {"walls", dem_section_walls, .fields = &dem_wall_fields},
-    {.name = "inlets", .read = dem_field_nothing},
+    {"inlets", dem_section_inlets, .fields = &dem_inlet_fields},
     {"bonds", dem_section_bonds, .fields = &dem_bond_fields},
     {"damping", dem_field_object, .at = offsetof(dem_scene, damping), .fields = &damping_fields},
     {"integrator", dem_field_object, .at = offsetof(dem_scene, integrator), .fields = &integrator_fields},

@@ -134,8 +134,12 @@ dem_status dem_scene_override_all(dem_scene_reader *r, const char *const *overri
 /// The sections.
 extern const dem_fields dem_scene_fields;  ///< of the outermost object, into the reader's scene
 dem_field_reader dem_section_materials, dem_section_contacts, dem_section_shapes, dem_section_bodies, dem_section_walls,
-    dem_section_fill, dem_section_measures, dem_section_bonds;
-extern const dem_fields dem_material_fields, dem_contact_fields, dem_shape_fields, dem_body_fields, dem_wall_fields,
+    dem_section_fill, dem_section_inlets, dem_section_measures, dem_section_bonds;
+/// Parts of a fill, into a dem_fill_def: its mix, its box; and what shares are told by, into a bool.
+dem_field_reader dem_field_mix, dem_field_corners, dem_field_share_by;
+extern const dem_fields dem_mix_fields;
+extern const dem_choice dem_shares_by[];
+extern const dem_fields dem_inlet_fields, dem_material_fields, dem_contact_fields, dem_shape_fields, dem_body_fields, dem_wall_fields,
     dem_fill_fields, dem_measure_fields, dem_bond_fields;
 /// Whether the regions can be measured, which the domain tells.
 dem_status dem_scene_check_measures(dem_scene_reader *r, const dem_scene_value *root);

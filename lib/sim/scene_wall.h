@@ -9,14 +9,15 @@ typedef struct wall_text {
     dem_wall_def wall;
     dem_wall_source source;
     dem_vec3 low, high;  ///< of a box
+    double radii[2];     ///< of a cone with ends
     bool turns;          ///< some part of the motion has set axis and point
     double stress[3];    ///< of a box: along x, y, z; NAN: no servo there
     bool three_stresses;
     uint64_t servo_given;
 } wall_text;
 
-extern const dem_fields dem_wall_motion_fields, dem_wall_servo_fields;
-dem_field_reader dem_wall_read_motion, dem_wall_read_servo;  ///< into a wall_text
+extern const dem_fields dem_wall_motion_fields, dem_wall_servo_fields, dem_wall_wear_fields;
+dem_field_reader dem_wall_read_motion, dem_wall_read_servo, dem_wall_read_wear;  ///< into a wall_text
 
 /// Whether the servo suits the form of the wall. `v`: the servo.
 dem_status dem_wall_check_servo(dem_scene_reader *r, const dem_scene_value *v, wall_text *text, bool box, bool plane);

@@ -60,6 +60,8 @@ static void put_time(dem_json_writer *w, const dem_scene *scene)
 
 static void put_domain(dem_json_writer *w, const dem_domain_def *domain)
 {
+    static const char *const leavings[] = {
+        [DEM_LEAVING_ERROR] = "error", [DEM_LEAVING_IGNORE] = "ignore", [DEM_LEAVING_DELETE] = "delete"};
     dem_json_open_object(w, "domain");
     put_vec(w, "min", domain->low);
     put_vec(w, "max", domain->high);
@@ -67,7 +69,7 @@ static void put_domain(dem_json_writer *w, const dem_domain_def *domain)
     for (int i = 0; i < 3; i++)
         dem_json_put_bool(w, NULL, domain->periodic[i]);
     dem_json_close(w, ']');
-    dem_json_put_string(w, "leaving", domain->leaving == DEM_LEAVING_IGNORE ? "ignore" : "error");
+    dem_json_put_string(w, "leaving", leavings[domain->leaving]);
     dem_json_close(w, '}');
 }
 
@@ -90,6 +92,13 @@ static void put_materials(dem_json_writer *w, const dem_scene *scene)
 static void put_normal(dem_json_writer *w, const dem_pair_law *law)
 {
     dem_json_open_object(w, "normal");
+    if (law->normal == DEM_NORMAL_PLUGIN) {
+        dem_json_put_string(w, "plugin", text_of(law->plugin));
+        for (size_t i = 0; i < law->parameter_count; i++)
+            dem_json_put_number(w, law->parameters[i].name, law->parameters[i].value);
+        dem_json_close(w, '}');
+        return;
+    }
     static const char *const names[] = {
         [DEM_NORMAL_LINEAR] = "linear",
         [DEM_NORMAL_HERTZ] = "hertz",
@@ -315,20 +324,25 @@ static void put_size(dem_json_writer *w, const dem_size_def *size)
     dem_json_close(w, '}');
 }
 
+static void put_mix(dem_json_writer *w, const dem_scene *scene, const dem_mix_def *mix, size_t count, bool by_mass)
+{
+    dem_json_open_array(w, "mix", false);
+    for (size_t i = 0; i < count; i++) {
+        dem_json_open_object(w, NULL);
+        dem_json_put_string(w, "shape", shape_of(scene, mix[i].shape));
+        dem_json_put_number(w, "share", mix[i].share);
+        put_size(w, &mix[i].size);
+        dem_json_close(w, '}');
+    }
+    dem_json_close(w, ']');
+    dem_json_put_string(w, "share_by", by_mass ? "mass" : "number");
+}
+
 static void put_fill(dem_json_writer *w, const dem_scene *scene, const dem_fill_def *fill)
 {
     dem_json_open_object(w, NULL);
     dem_json_open_object(w, "fill");
-    dem_json_open_array(w, "mix", false);
-    for (size_t i = 0; i < fill->mix_count; i++) {
-        dem_json_open_object(w, NULL);
-        dem_json_put_string(w, "shape", shape_of(scene, fill->mix[i].shape));
-        dem_json_put_number(w, "share", fill->mix[i].share);
-        put_size(w, &fill->mix[i].size);
-        dem_json_close(w, '}');
-    }
-    dem_json_close(w, ']');
-    dem_json_put_string(w, "share_by", fill->share_by_mass ? "mass" : "number");
+    put_mix(w, scene, fill->mix, fill->mix_count, fill->share_by_mass);
     dem_json_open_array(w, "box", false);
     put_vec(w, NULL, fill->low);
     put_vec(w, NULL, fill->high);
@@ -493,6 +507,23 @@ static void put_servo(dem_json_writer *w, const dem_scene *scene, const dem_serv
     dem_json_close(w, '}');
 }
 
+static void put_wear(dem_json_writer *w, const dem_wear_def *wear)
+{
+    bool finnie = wear->law == DEM_WEAR_FINNIE;
+    dem_json_open_object(w, "wear");
+    dem_json_put_string(w, "law", finnie ? "finnie" : "archard");
+    if (finnie) {
+        dem_json_put_number(w, "pressure", wear->pressure);
+        dem_json_put_number(w, "constant", wear->constant);
+        dem_json_put_number(w, "psi", wear->psi);
+        dem_json_put_number(w, "roughness", wear->roughness);
+    } else {
+        dem_json_put_number(w, "coefficient", wear->coefficient);
+        dem_json_put_number(w, "hardness", wear->hardness);
+    }
+    dem_json_close(w, '}');
+}
+
 static void put_form(dem_json_writer *w, const dem_wall_def *wall, const dem_wall_source *source)
 {
     if (wall->kind == DEM_WALL_MESH) {
@@ -500,14 +531,29 @@ static void put_form(dem_json_writer *w, const dem_wall_def *wall, const dem_wal
         dem_json_put_string(w, "unit", source->unit ? source->unit : "m");
         return;
     }
-    bool plane = wall->kind == DEM_WALL_PLANE;
-    dem_json_open_object(w, plane ? "plane" : "cylinder");
-    put_vec(w, "point", wall->point);
-    put_vec(w, plane ? "normal" : "axis", wall->normal);
-    if (!plane) {
+    static const char *const keys[] = {
+        [DEM_WALL_PLANE] = "plane", [DEM_WALL_DISC] = "plane",   [DEM_WALL_RECTANGLE] = "plane",
+        [DEM_WALL_CONE] = "cone",   [DEM_WALL_SPHERE] = "sphere", [DEM_WALL_CYLINDER] = "cylinder"};
+    bool plane = strcmp(keys[wall->kind], "plane") == 0, sphere = wall->kind == DEM_WALL_SPHERE;
+    bool cone = wall->kind == DEM_WALL_CONE, endless = cone && isinf(wall->length);
+    dem_json_open_object(w, keys[wall->kind]);
+    put_vec(w, sphere ? "centre" : endless ? "apex" : "point", wall->point);
+    if (!sphere)
+        put_vec(w, plane ? "normal" : "axis", wall->normal);
+    if (wall->kind == DEM_WALL_DISC || sphere || wall->kind == DEM_WALL_CYLINDER)
         dem_json_put_number(w, "radius", wall->radius);
-        dem_json_put_string(w, "side", wall->outside ? "outside" : "inside");
+    if (wall->kind == DEM_WALL_RECTANGLE) {
+        dem_json_put_numbers(w, "size", wall->size, 2);
+        put_vec(w, "along", wall->along);
     }
+    if (endless)
+        dem_json_put_number(w, "angle", wall->angle);
+    else if (cone) {
+        dem_json_put_numbers(w, "radii", (double[]){wall->radius, wall->end_radius}, 2);
+        dem_json_put_number(w, "length", wall->length);
+    }
+    if (sphere || endless || wall->kind == DEM_WALL_CYLINDER)
+        dem_json_put_string(w, "side", wall->outside ? "outside" : "inside");
     dem_json_close(w, '}');
 }
 
@@ -531,6 +577,8 @@ static dem_status put_walls(dem_json_writer *w, const dem_scene *scene, dem_erro
         put_motion(w, wall, &source);
         if (wall->servo.on)
             put_servo(w, scene, &wall->servo);
+        if (wall->wear.law != DEM_WEAR_NONE)
+            put_wear(w, &wall->wear);
         dem_json_close(w, '}');
     }
     dem_json_close(w, '}');
@@ -557,6 +605,47 @@ static void put_damping(dem_json_writer *w, const dem_damping_def *damping)
         dem_json_put_bool(w, "buoyancy", drag->buoyancy);
         dem_json_close(w, '}');
     }
+    dem_json_close(w, '}');
+}
+
+static void put_inlet(dem_json_writer *w, const dem_scene *scene, const dem_inlet_def *inlet)
+{
+    dem_json_open_object(w, text_of(inlet->name));
+    if (inlet->kind == DEM_INLET_BOX) {
+        dem_json_open_array(w, "box", false);
+        put_vec(w, NULL, inlet->low);
+        put_vec(w, NULL, inlet->high);
+        dem_json_close(w, ']');
+    } else {
+        dem_json_open_object(w, "sphere");
+        put_vec(w, "centre", inlet->centre);
+        dem_json_put_number(w, "radius", inlet->radius);
+        dem_json_close(w, '}');
+    }
+    put_mix(w, scene, inlet->mix, inlet->mix_count, inlet->share_by_mass);
+    dem_json_put_number(w, inlet->by_mass ? "mass_rate" : "rate", inlet->rate);
+    put_vec(w, "velocity", inlet->velocity);
+    dem_json_put_number(w, "velocity_spread", inlet->velocity_spread);
+    put_vec(w, "spin", inlet->spin);
+    dem_json_put_number(w, "spin_spread", inlet->spin_spread);
+    dem_json_put_number(w, "start", inlet->start);
+    if (isfinite(inlet->stop))
+        dem_json_put_number(w, "stop", inlet->stop);
+    if (inlet->count)
+        dem_json_put_whole(w, "count", (int64_t)inlet->count);
+    dem_json_put_number(w, "gap", inlet->gap);
+    dem_json_put_whole(w, "seed", (int64_t)inlet->seed);
+    dem_json_close(w, '}');
+}
+
+// a scene that has none names none
+static void put_inlets(dem_json_writer *w, const dem_scene *scene)
+{
+    if (!scene->inlet_count)
+        return;
+    open_map(w, "inlets");
+    for (size_t i = 0; i < scene->inlet_count; i++)
+        put_inlet(w, scene, &scene->inlets[i]);
     dem_json_close(w, '}');
 }
 
@@ -652,6 +741,7 @@ static dem_status put_scene(dem_json_writer *w, const dem_scene *scene, dem_erro
     put_shapes(w, scene);
     put_bodies(w, scene);
     DEM_TRY(put_walls(w, scene, error));
+    put_inlets(w, scene);
     put_bonds(w, scene);
     put_damping(w, &scene->damping);
     dem_json_open_object(w, "integrator");

@@ -67,6 +67,8 @@ static dem_status prepare(dem_walls *walls, size_t i, dem_error *error)
                         "the partner of the servo of wall \"%.60s\" is no servo wall; give it a servo, too", w->name);
     if (!(s->area > 0) && !has_extents(s) && w->mesh)
         s->area = shadow_of_mesh(w->mesh, s->direction);
+    else if (!(s->area > 0) && !has_extents(s))
+        s->area = dem_surface_shadow(&w->surface, s->direction);
     if (s->stress && !(dem_servo_area(walls, i) > 0))
         return dem_fail(error, DEM_BAD_INPUT,
                         "the servo of wall \"%.60s\" has a stress but no area; give \"area\" or \"extents\"", w->name);

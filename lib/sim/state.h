@@ -40,6 +40,7 @@ enum {
     X(uint32_t, shape, 1, "-", true, "index of the shape")                                                             \
     X(double, wall_limit, 1, "m", (w)->walls.count > 0, "path at which the wall lists are looked at")                  \
     X(double, strain_limit, 1, "-", (w)->features.watch, "strain at which the step is looked at")                      \
+    X(uint32_t, id, 1, "-", (w)->population != NULL, "number of the body by birth, or that there is none")             \
     X(int32_t, wraps, 3, "-", (w)->periodic, "how often a periodic side was crossed")                                  \
     X(double, before, 8, "kg m/s, kg m2/s", (w)->damping.local > 0 || (w)->damping.viscous > 0 || (w)->other_motion,   \
       "momenta before the contacts")                                                                                   \
@@ -50,13 +51,14 @@ enum {
       "rate of the spin in the body, a step before")
 
 typedef struct dem_bodies {
-    size_t count, padded;  ///< padded: to 8, with the two dummies
+    size_t count, padded;  ///< rows, some of which may be without a body; padded: to 8, with the two dummies
+    size_t living;         ///< bodies
     uint32_t dummy;        ///< row of the first dummy; the second follows
     size_t momentum_rows;  ///< rows of `momentum`: those of the bodies, then slots
 #define COLUMN(type, name, width, unit, when, about) type *name;
     DEM_BODY_COLUMNS(COLUMN)
 #undef COLUMN
-    uint32_t *place;  ///< [count] row of the i-th body of the scene
+    uint32_t *place;  ///< [living] row of the i-th body, in the order they came; there is room for `count`
 } dem_bodies;
 
 static inline bool fluid_drags(const dem_drag_def *drag)
@@ -134,8 +136,20 @@ typedef struct dem_servo_sum {
     double hardness;  ///< of the contacts [N/m]
 } dem_servo_sum;
 
+typedef struct dem_wear_event {
+    uint32_t wall, triangle;
+    double volume;  ///< [m^3]
+} dem_wear_event;
+
+/// What a segment's bodies have taken off walls, until it is added there.
+typedef struct dem_wear_events {
+    dem_wear_event *items;
+    size_t count, capacity;
+    bool failed;
+} dem_wear_events;
+
 typedef struct dem_views {
-    uint32_t *shape, *coordination, *by_row;  ///< by_row: body of a row
+    uint32_t *shape, *coordination, *id, *by_row;  ///< by_row: body of a row
     double *scale, *mass;
     dem_vec3 *position, *velocity, *spin, *force, *moment;
     dem_quat *orientation;
@@ -151,6 +165,7 @@ typedef struct dem_views {
 } dem_views;
 
 typedef struct dem_search dem_search;
+typedef struct dem_population dem_population;
 typedef struct dem_bonds dem_bonds;
 
 typedef struct dem_push {
@@ -201,6 +216,7 @@ struct dem_world {
     dem_tally *tallies;                       ///< [segments * (1 + DEM_WALL_FORMS)]
     dem_motion_tally *motion_tallies;         ///< [segments]
     double push_work;
+    dem_population *population;            ///< NULL: bodies neither come nor go
     uint64_t step_reviewed;                ///< when all bodies were last asked for their step
     double energy_start, potential_start;  ///< [J]
     // work space
@@ -219,7 +235,8 @@ struct dem_world {
     size_t push_count, push_capacity;
     dem_views views;
     dem_regions *regions;  ///< NULL: nothing is measured by region
-    dem_servo_sum *servo_sums;  ///< [segments * walls] (servo)
+    dem_servo_sum *servo_sums;     ///< [segments * walls] (servo)
+    dem_wear_events *wear_events;  ///< [segments] (wear)
     dem_pass_time clocks[DEM_PASSES];
     uint64_t searches;  ///< for pairs, since the world was made
     double warned[8];
@@ -264,10 +281,22 @@ static inline double body_stride(const dem_bodies *b, size_t row, double step)
 
 static inline dem_rows world_rows(const dem_world *w)
 {
-    return (dem_rows){w->bodies.bodies, w->bodies.momentum, w->bodies.inertia, &w->templates.spheres[0][0],
-                      w->shifts,        w->laws.rows,       w->walls.rows};
+    return (dem_rows){.bodies = w->bodies.bodies,
+                      .momentum = w->bodies.momentum,
+                      .inertia = w->bodies.inertia,
+                      .spheres = &w->templates.spheres[0][0],
+                      .shifts = w->shifts,
+                      .laws = w->laws.rows,
+                      .parameters = w->laws.parameters,
+                      .walls = w->walls.rows};
 }
 
+/// What stands for a number of a body: a row without one; a row that a body has left, which lists may still name.
+enum { DEM_ROW_LEFT = UINT32_MAX - 1, DEM_ROW_FREE = UINT32_MAX };
+static inline bool body_absent(const dem_bodies *b, size_t row)
+{
+    return b->id && b->id[row] >= (uint32_t)DEM_ROW_LEFT;
+}
 static inline uint32_t body_hold(const dem_bodies *b, size_t row)
 {
     return b->hold ? b->hold[row] : 0;
@@ -277,6 +306,14 @@ static inline double body_mass(const dem_world *w, size_t row)
 {
     const dem_template *t = &w->templates.items[w->bodies.shape[row]];
     return t->mass * template_bulk(t, body_scale(&w->bodies, row));
+}
+
+/// Kernels of contacts: those of the machine, or of the scene's plug-in; the last is for any features.
+static inline const dem_contact_instance *world_instances(const dem_world *w, size_t *count)
+{
+    const dem_law_table *user = w->laws.plugin.table;
+    *count = user ? user->instance_count : w->kernels->instance_count;
+    return user ? user->instances : w->kernels->instances;
 }
 
 #endif

@@ -4,6 +4,7 @@
 
 #include "base/status.h"
 #include "sim/bonds.h"
+#include "sim/population.h"
 #include "sim/scene.h"
 #include "sim/touch.h"
 
@@ -112,14 +113,53 @@ static double inverse_mass(const dem_world *w, size_t row, dem_vec3 arm, dem_vec
     return inertia[0] + m.x * m.x * inertia[1] + m.y * m.y * inertia[2] + m.z * m.z * inertia[3];
 }
 
+// what a law of the user's says of surfaces at rest, as it remembers them (columns NULL: as new ones)
+static dem_law_forces user_forces(const dem_world *w, const double *law, const dem_contact_columns *c,
+                                  const dem_touch *t, double mass)
+{
+    dem_law_contact contact = {.overlap = t->overlap,
+                               .overlap_before = t->overlap,
+                               .normal = t->normal,
+                               .radius_a = t->radius[0],
+                               .radius_b = t->radius[1] > 0 ? t->radius[1] : INFINITY,
+                               .reduced = t->reduced,
+                               .mass = mass,
+                               .step = w->next_step,
+                               .next_step = w->next_step};
+    dem_law_memory memory = {.vector = {{0, 0, 0}}};
+    const dem_law_spec *spec = w->laws.plugin.table->spec;
+    for (int k = 0; c && k < 3 * spec->vectors; k++)
+        v3_set(&memory.vector[k / 3], k % 3, c->user[k][t->place]);
+    for (int k = 0; c && k < spec->numbers; k++)
+        memory.number[k] = c->user[3 * spec->vectors + k][t->place];
+    size_t row = (size_t)(law - w->laws.rows) / LAW_SLOTS;
+    return w->laws.plugin.table->law(&contact, w->laws.parameters + DEM_LAW_PARAMETERS * row, &memory);
+}
+
+static void add_user_contact(const dem_world *w, body_problem *p, const dem_touch *t, const dem_law_forces *s,
+                             uint32_t row, dem_vec3 arm, double times)
+{
+    add_stiffness(w, p->stiffness, row, arm, t->normal, times * s->stiffness, times * s->slide_stiffness);
+    add_stiffness(w, p->damping, row, arm, t->normal, times * s->damping, times * s->slide_damping);
+    if (!w->features.user_turns)
+        return;
+    add_turning(w, p->stiffness, row, t->normal, times * s->turn_stiffness, times * s->turn_stiffness);
+    add_turning(w, p->damping, row, t->normal, times * s->turn_damping, times * s->turn_damping);
+}
+
 // one contact of a body that stands at `arm` [0] from it and, of a pair, [1] from the other
-static void add_contact(const dem_world *w, body_problem *p, const dem_touch *t, const double *law,
-                        const uint32_t row[2], const dem_vec3 arm[2], bool wall)
+static void add_contact(const dem_world *w, body_problem *p, const dem_contact_columns *c, const dem_touch *t,
+                        const double *law, const uint32_t row[2], const dem_vec3 arm[2], bool wall)
 {
     double mass = inverse_mass(w, row[0], arm[0], t->normal);
     if (!wall)
         mass += inverse_mass(w, row[1], arm[1], t->normal);
     mass = 1 / mass;
+    if (law[LAW_USER] > 0) {
+        dem_law_forces s = user_forces(w, law, c, t, mass);
+        add_user_contact(w, p, t, &s, row[0], arm[0], wall ? 1 : 2);
+        return;
+    }
     double radius = law[LAW_HERTZ] > 0 ? sqrt(t->reduced * larger(t->overlap, 0)) : 0;
     double times = wall || hold_whole(body_hold(&w->bodies, row[1])) ? 1 : 2;  // a body that is held is a wall
     radius += law_radius_at_rest(law, t->reduced);
@@ -154,7 +194,7 @@ static bool counts(const dem_world *w, const dem_contact_columns *c, const dem_t
     if (listed || t->overlap > 0)
         return true;
     // at the start nothing is bonded yet
-    bool may = w->features.jkr || w->steps == 0 || (c->bond && c->bond[t->place] > 0);
+    bool may = w->features.jkr || w->features.user_reaches || w->steps == 0 || (c->bond && c->bond[t->place] > 0);
     return may && t->overlap > -w->reach;
 }
 
@@ -170,7 +210,7 @@ static void add_pairs(const dem_world *w, size_t row, bool listed, body_problem 
             dem_vec3 from_a = v3_sub(t.point, body_position(&w->bodies, pair->a));
             dem_vec3 from_b = v3_sub(t.point, v3_add(body_position(&w->bodies, pair->b), t.shift));
             bool first = pair->a == row;
-            add_contact(w, p, &t, law_of(w, &w->contacts.columns, t.place),
+            add_contact(w, p, &w->contacts.columns, &t, law_of(w, &w->contacts.columns, t.place),
                         (uint32_t[]){first ? pair->a : pair->b, first ? pair->b : pair->a},
                         (dem_vec3[]){first ? from_a : from_b, first ? from_b : from_a}, false);
         }
@@ -191,8 +231,8 @@ static void add_walls(const dem_world *w, size_t row, bool listed, body_problem 
             dem_touch t = dem_touch_of_wall(w, (dem_wall_form)form, at);
             dem_vec3 arm = v3_sub(t.point, body_position(&w->bodies, row));
             if (counts(w, &contacts->columns, &t, listed && form != DEM_FORM_MESH))
-                add_contact(w, p, &t, law_of(w, &contacts->columns, at), (uint32_t[]){(uint32_t)row, 0},
-                            (dem_vec3[]){arm, arm}, true);
+                add_contact(w, p, &contacts->columns, &t, law_of(w, &contacts->columns, at),
+                            (uint32_t[]){(uint32_t)row, 0}, (dem_vec3[]){arm, arm}, true);
         }
     }
 }
@@ -235,11 +275,11 @@ static dem_step_bound body_bound(const dem_world *w, size_t row, bool listed)
 
 dem_status dem_step_stable(dem_world *w, bool listed, dem_step_bound *bound, dem_error *error)
 {
-    (void)error;
-    if (w->mesh_touches)
-        dem_mesh_touch_measure(w, 0, w->segment_count);
+    DEM_TRY(dem_mesh_touch_measure_all(w, error));
     *bound = (dem_step_bound){.step = INFINITY};
     for (size_t row = 0; row < w->bodies.count; row++) {
+        if (body_absent(&w->bodies, row))
+            continue;
         dem_step_bound own = body_bound(w, row, listed);
         if (own.step < bound->step)
             *bound = own;
@@ -255,13 +295,27 @@ double dem_world_critical_step(dem_world *w)
 
 // ---- the automatic step
 
-// the frequency of a body's stiffest contact with its like [1/s^2], with Hertz at the speed given
-static double stiffest_contact(const dem_world *w, size_t row, const double *law, double speed)
+// at the overlap that takes up the speed: F d = m v^2 with a linear law, and deeper with one that stiffens [1/s^2]
+static double user_frequency2(const dem_world *w, const double *law, double radius, double mass, double speed)
 {
-    const dem_template *t = &w->templates.items[w->bodies.shape[row]];
-    double scale = body_scale(&w->bodies, row), r = t->radius_max * scale,
-           mass = t->least_mass * template_bulk(t, scale) / 2;
+    dem_touch t = {.normal = {0, 0, 1}, .reduced = radius / 2, .radius = {radius, radius}};
+    dem_law_forces s = {.push = 0};
+    for (t.overlap = 1e-9 * radius; t.overlap < radius; t.overlap *= 2) {
+        s = user_forces(w, law, NULL, &t, mass);
+        if (!(s.push * t.overlap < mass * speed * speed))
+            break;
+    }
+    double stiffness = fmax(s.stiffness, s.push / t.overlap);
+    return isfinite(stiffness) && stiffness > 0 ? stiffness / mass : 0;
+}
+
+// the frequency of a body's stiffest contact with its like [1/s^2], with Hertz at the speed given
+static double stiffest_contact(const dem_world *w, const dem_template *t, double scale, const double *law, double speed)
+{
+    double r = t->radius_max * scale, mass = t->least_mass * template_bulk(t, scale) / 2;
     double radius = 0;
+    if (law[LAW_USER] > 0)
+        return user_frequency2(w, law, r, mass, speed);
     if (law[LAW_HERTZ] > 0) {
         // the duration of an impact, as that of a spring: 2.943 d / v = pi / w
         double overlap = pow(15 * mass * speed * speed / (8 * law[LAW_HERTZ] * sqrt(r / 2)), 0.4);
@@ -277,6 +331,13 @@ static double stiffest_contact(const dem_world *w, size_t row, const double *law
 double dem_step_impact_speed(const dem_world *w)
 {
     double fastest = 0, size = 0;
+    for (size_t i = 0; w->population && i < w->population->inlet_count; i++) {
+        const dem_inlet *inlet = &w->population->inlets[i];
+        if (!dem_inlet_over(w, inlet)) {
+            fastest = fmax(fastest, v3_norm(inlet->def.velocity) + 3 * inlet->def.velocity_spread);
+            size = fmax(size, inlet->radius);
+        }
+    }
     for (size_t row = 0; row < w->bodies.count; row++) {
         fastest = fmax(fastest, body_stride(&w->bodies, row, 1));
         size = fmax(size, w->bodies.radius[row]);
@@ -284,25 +345,47 @@ double dem_step_impact_speed(const dem_world *w)
     return fmax(fmax(2 * fastest, w->sweep_speed), sqrt(20 * v3_norm(w->gravity) * size));
 }
 
-double dem_step_accurate(const dem_world *w)
+// the highest frequency of a body's contacts, squared [1/s^2]
+static double highest_frequency(const dem_world *w, uint32_t shape, double scale, double speed)
 {
-    double highest = 0, speed = w->features.hertz ? dem_step_impact_speed(w) : 0;
-    size_t n = w->laws.material_count;
-    for (size_t row = 0; row < w->bodies.count; row++) {
-        uint32_t material = w->templates.items[w->bodies.shape[row]].material;
-        for (uint32_t other = 0; other < n; other++) {
-            const double *law = laws_between(&w->laws, material, other);
-            if (law)
-                highest = fmax(highest, stiffest_contact(w, row, law, speed));
-        }
+    const dem_template *t = &w->templates.items[shape];
+    double highest = 0;
+    for (uint32_t other = 0; other < w->laws.material_count; other++) {
+        const double *law = laws_between(&w->laws, t->material, other);
+        if (law)
+            highest = fmax(highest, stiffest_contact(w, t, scale, law, speed));
     }
+    return highest;
+}
+
+static double accurate_step(const dem_world *w, double highest)
+{
     double steps = w->time_def.contact_steps > 0 ? w->time_def.contact_steps : DEM_PI;
     return highest > 0 ? DEM_PI / sqrt(highest) / steps : INFINITY;
 }
 
+double dem_step_accurate(const dem_world *w)
+{
+    double highest = 0, speed = w->features.hertz || w->features.user ? dem_step_impact_speed(w) : 0;
+    for (size_t row = 0; row < w->bodies.count; row++)
+        if (!body_absent(&w->bodies, row))
+            highest = fmax(highest,
+                           highest_frequency(w, w->bodies.shape[row], body_scale(&w->bodies, row), speed));
+    // usual bodies that are to come; smaller ones lower the step when they do
+    for (size_t i = 0; w->population && i < w->population->inlet_count; i++) {
+        const dem_inlet *inlet = &w->population->inlets[i];
+        dem_fill_draw draw;
+        for (size_t k = 0; !dem_inlet_over(w, inlet) && dem_fill_drawer_quantile(inlet->drawer, k, 0.5, &draw); k++)
+            highest = fmax(highest, highest_frequency(w, draw.shape, draw.scale, speed));
+    }
+    return accurate_step(w, highest);
+}
+
 static double safety(const dem_world *w)
 {
-    return isnan(w->time_def.safety) ? (w->features.hertz ? SAFETY_HERTZ : SAFETY) : w->time_def.safety;
+    if (!isnan(w->time_def.safety))
+        return w->time_def.safety;
+    return w->features.hertz || w->features.user ? SAFETY_HERTZ : SAFETY;
 }
 
 static void set_step(dem_world *w, double step)
@@ -329,7 +412,8 @@ static double strain_unasked(const dem_world *w)
 static void forget_limits(dem_world *w)
 {
     for (size_t row = 0; row < w->bodies.count; row++)
-        w->bodies.strain_limit[row] = strain_unasked(w);
+        if (!body_absent(&w->bodies, row))
+            w->bodies.strain_limit[row] = strain_unasked(w);
 }
 
 dem_status dem_step_choose(dem_world *w, dem_error *error)
@@ -343,6 +427,16 @@ dem_status dem_step_choose(dem_world *w, dem_error *error)
     }
     w->next_step = step;
     return DEM_OK;
+}
+
+void dem_step_admit(dem_world *w, size_t row)
+{
+    if (!w->features.watch)
+        return;
+    double speed = w->features.hertz || w->features.user ? dem_step_impact_speed(w) : 0;
+    double step =
+        accurate_step(w, highest_frequency(w, w->bodies.shape[row], body_scale(&w->bodies, row), speed));
+    set_step(w, smaller(w->next_step, step));
 }
 
 // lowers the step where a body's own problem asks for it, and allows it the strain that its present contacts leave

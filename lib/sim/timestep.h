@@ -45,4 +45,7 @@ dem_status dem_step_review(dem_world *world, dem_error *error);
 /// Largest eigenvalue of a symmetric matrix (cyclic Jacobi); destroys it.
 double dem_largest_eigenvalue6(double a[6][6]);
 
+/// Lowers an automatic step to what a body that has come asks for.
+void dem_step_admit(dem_world *world, size_t row);
+
 #endif

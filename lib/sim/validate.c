@@ -68,6 +68,8 @@ static dem_ball space_ball(const dem_world *w, size_t row, size_t sphere)
 static void compare(const dem_world *w, uint32_t a, uint32_t b, uint32_t image, const key *listed, size_t count,
                     dem_truth *truth)
 {
+    if (body_absent(&w->bodies, a) || body_absent(&w->bodies, b))
+        return;
     if (hold_whole(body_hold(&w->bodies, a)) && hold_whole(body_hold(&w->bodies, b)))
         return;
     const dem_template *ta = &w->templates.items[w->bodies.shape[a]], *tb = &w->templates.items[w->bodies.shape[b]];
@@ -133,7 +135,7 @@ static dem_status check_walls(const dem_world *w, dem_truth *truth, dem_error *e
             truth->doubled += by_key(&listed[i - 1], &listed[i]) == 0;
         for (uint32_t row = 0; status == DEM_OK && row < w->bodies.count; row++) {
             const dem_template *t = &w->templates.items[w->bodies.shape[row]];
-            bool held = hold_whole(body_hold(&w->bodies, row));
+            bool held = body_absent(&w->bodies, row) || hold_whole(body_hold(&w->bodies, row));
             for (uint32_t i = t->first; !held && i < t->first + t->count; i++) {
                 dem_ball ball = space_ball(w, row, i);
                 for (uint32_t k = 0; k < w->walls.count; k++)

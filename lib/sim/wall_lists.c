@@ -105,6 +105,7 @@ static void take_springs(const dem_contacts *contacts, const dem_segment *s, siz
         if (k == end || c->sphere_a[at] != item->sphere_a || c->sphere_b[at] != item->sphere_b)
             continue;
         item->history = dem_history_get(c, at);
+        item->old = (uint32_t)(at - s->begin) + 1;
         k++;
     }
 }
@@ -118,7 +119,7 @@ static bool expired(const dem_world *w, size_t row)
 static void look_at_body(wall_look *look, size_t row, new_list *list, double *slack)
 {
     dem_world *w = look->w;
-    if (hold_whole(body_hold(&w->bodies, row)))
+    if (body_absent(&w->bodies, row) || hold_whole(body_hold(&w->bodies, row)))
         return;
     double strides = WALL_STRIDES * (body_stride(&w->bodies, row, w->next_step) + w->sweep_speed * w->next_step);
     double margin = dem_refresh_margin(w, row, row, strides) + w->ahead;
@@ -174,7 +175,9 @@ static void look_at_form(wall_look *look, size_t segment, dem_wall_form form, co
                 look->failed |= !dem_mesh_touch_remember(&w->mesh_touches[segment], &list.touches, touches);
         } else {
             for (size_t k = from; k < old; k++) {
-                dem_contact_item item = dem_contact_get(&contacts->columns, segment_place(s, k));
+                size_t at = segment_place(s, k);
+                dem_contact_item item = dem_contact_get(&contacts->columns, at);
+                item.old = (uint32_t)(at - s->begin) + 1;
                 add_item(look, &item);
             }
             if (form == DEM_FORM_MESH)
@@ -220,24 +223,31 @@ static bool put_lists(wall_look *look, dem_wall_form form, size_t *needed)
     if (!dem_contacts_reserve(w, contacts, (int)form, needed))
         return false;
     dem_contact_item idle = dem_contact_idle(w, (int)form);
-    for (size_t i = 0; i < look->list_count; i++) {
+    dem_contact_extras extras = dem_extras_of(&contacts->columns);
+    dem_extras_kept kept = {0};
+    bool good = true;
+    for (size_t i = 0; good && i < look->list_count; i++) {
         new_list *list = &look->lists[i];
         if (list->form != form)
             continue;
         dem_segment *s = &contacts->segments[list->segment];
+        good = dem_extras_keep(&extras, s, look->items + list->begin, list->count, &kept);
         size_t full = (list->count + DEM_BLOCK_LANES - 1) / DEM_BLOCK_LANES * DEM_BLOCK_LANES;
         s->end = s->begin + full;
         s->dirty = false;
         for (size_t k = 0; k < full; k++)
             dem_contact_put(&contacts->columns, segment_place(s, k),
                             k < list->count ? &look->items[list->begin + k] : &idle);
+        if (good)
+            dem_extras_give(&extras, s, list->count, full, &kept);
         if (form == DEM_FORM_MESH) {
             dem_mesh_touches_release(&w->mesh_touches[list->segment]);
             w->mesh_touches[list->segment] = list->touches;
             list->touches = (dem_mesh_touches){0};
         }
     }
-    return true;
+    free(kept.numbers);
+    return good;
 }
 
 dem_status dem_wall_refresh(dem_world *w, dem_error *error)

@@ -11,7 +11,9 @@
 static const double FAR_AWAY = 1e155;  // [m] farther than any dummy body
 
 static const dem_wall_form form_of[] = {
-    [DEM_WALL_PLANE] = DEM_FORM_PLANE, [DEM_WALL_CYLINDER] = DEM_FORM_CYLINDER, [DEM_WALL_MESH] = DEM_FORM_MESH};
+    [DEM_WALL_PLANE] = DEM_FORM_PLANE, [DEM_WALL_CYLINDER] = DEM_FORM_CYLINDER, [DEM_WALL_MESH] = DEM_FORM_MESH,
+    [DEM_WALL_CONE] = DEM_FORM_MESH,   [DEM_WALL_SPHERE] = DEM_FORM_MESH,      [DEM_WALL_DISC] = DEM_FORM_MESH,
+    [DEM_WALL_RECTANGLE] = DEM_FORM_MESH};
 
 // a surface that moves along itself stays where it is: a plane within itself, a cylinder about its own axis
 static bool sweeps(const dem_wall *w)
@@ -19,7 +21,7 @@ static bool sweeps(const dem_wall *w)
     const dem_wall_motion *m = &w->motion;
     double little = 1e-12;
     if (w->servo.on || w->form == DEM_FORM_MESH)
-        return w->moves;
+        return w->moves && (w->servo.on || m->shifts || !dem_surface_turns_in_place(&w->surface, m->through, m->axis));
     if (m->shifts && !(v3_norm2(m->shift_only) > 0))
         return true;
     double across = v3_norm(v3_cross(m->axis, w->normal));
@@ -32,6 +34,20 @@ static bool sweeps(const dem_wall *w)
     return (m->shifts && v3_norm(aside) > little) || (m->turns && !about_itself);
 }
 
+static dem_status make_wear(const dem_wall_def *def, dem_wall *wall, dem_error *error)
+{
+    if (wall->wear.law == DEM_WEAR_NONE)
+        return DEM_OK;
+    if (wall->form != DEM_FORM_MESH)
+        return dem_fail(error, DEM_BAD_INPUT,
+                        "wall \"%.60s\" has no end and no area to wear; take a mesh, a disc, a rectangle, a cone or a "
+                        "sphere",
+                        wall->name);
+    wall->worn_count = def->kind == DEM_WALL_MESH ? def->mesh.triangle_count : 1;
+    wall->worn = dem_alloc_zero(wall->worn_count, sizeof *wall->worn);
+    return wall->worn ? DEM_OK : dem_fail_memory(error);
+}
+
 static dem_status make_wall(const dem_ctx *ctx, const dem_wall_def *def, dem_wall *wall, dem_error *error)
 {
     *wall = (dem_wall){.name = strdup(def->name ? def->name : ""),
@@ -42,13 +58,16 @@ static dem_status make_wall(const dem_ctx *ctx, const dem_wall_def *def, dem_wal
                        .radius = def->outside ? -def->radius : def->radius,
                        .motion = dem_wall_motion_of(def),
                        .servo = def->servo,
+                       .wear = def->wear,
+                       .surface = dem_surface_of(def),
                        .orientation = {1, 0, 0, 0}};
     bool owned = dem_wall_motion_own(&wall->motion);
     if (!wall->name || !owned)
         return dem_fail_memory(error);
+    DEM_TRY(make_wear(def, wall, error));
     wall->moves = dem_wall_motion_any(&wall->motion) || wall->servo.on;
     wall->sweeps = wall->moves && sweeps(wall);
-    if (wall->form == DEM_FORM_MESH)
+    if (def->kind == DEM_WALL_MESH)
         return dem_mesh_wall_create(ctx, &def->mesh, wall->name, &wall->mesh, error);
     return DEM_OK;
 }
@@ -69,6 +88,8 @@ dem_status dem_walls_create(const dem_ctx *ctx, const dem_scene *scene, dem_wall
         walls->move |= walls->items[i].moves;
         walls->sweep |= walls->items[i].sweeps;
         walls->servo |= walls->items[i].servo.on;
+        walls->wear |= walls->items[i].wear.law != DEM_WEAR_NONE;
+        walls->rub |= walls->items[i].wear.law == DEM_WEAR_ARCHARD;
     }
     dem_walls_place(walls, 0);
     return walls->servo ? dem_servo_prepare(walls, error) : DEM_OK;
@@ -78,6 +99,7 @@ void dem_walls_release(dem_walls *walls)
 {
     for (size_t i = 0; i < walls->count; i++) {
         free(walls->items[i].name);
+        free(walls->items[i].worn);
         dem_wall_motion_release(&walls->items[i].motion);
         dem_mesh_wall_destroy(walls->items[i].mesh);
     }

@@ -5,11 +5,10 @@
 #include "dem/scene.h"
 #include "math/quat.h"
 #include "sim/kernels.h"
+#include "sim/surface.h"
 #include "sim/wall_motion.h"
 
 enum { DEM_WALL_ROW = 16 };
-
-typedef struct dem_mesh_wall dem_mesh_wall;
 
 typedef struct dem_wall {
     char *name;
@@ -17,9 +16,13 @@ typedef struct dem_wall {
     uint32_t material;
     dem_vec3 point, normal;  ///< at time 0; see dem_wall_def
     double radius;           ///< of a cylinder, negative where the bodies are outside [m]
-    dem_mesh_wall *mesh;     ///< in the frame of time 0
+    dem_mesh_wall *mesh;     ///< in the frame of time 0; NULL: none
+    dem_surface surface;     ///< of the form MESH without a mesh, in that frame
     dem_wall_motion motion;
     dem_servo_def servo;
+    dem_wear_def wear;
+    double *worn;  ///< [worn_count] by triangle as given, or of the whole [m^3] (wear)
+    size_t worn_count;
     double travel, speed;  ///< of a servo, along its direction, now [m], [m/s]
     bool moves;            ///< its surface has a velocity
     bool sweeps;           ///< ... and its shape does not stay in place
@@ -34,7 +37,7 @@ typedef struct dem_walls {
     dem_wall *items;
     size_t count;
     double *rows;
-    bool move, sweep, servo;  ///< some do, some are
+    bool move, sweep, servo, wear, rub;  ///< some do, some are; rub: wear by Archard
 } dem_walls;
 
 /// Errors: DEM_BAD_INPUT, DEM_UNAVAILABLE for a mesh without Embree.

@@ -11,9 +11,11 @@
 #include "sim/measure.h"
 #include "sim/motion.h"
 #include "sim/place.h"
+#include "sim/population.h"
 #include "sim/schemes.h"
 #include "sim/servo.h"
 #include "sim/timestep.h"
+#include "sim/wear.h"
 
 static const char *const pass_names[DEM_PASSES] = {
     [DEM_PASS_PAIRS] = "contacts", [DEM_PASS_WALLS] = "walls",     [DEM_PASS_MOTION] = "motion",
@@ -51,7 +53,7 @@ static dem_status copy_shapes(dem_world *w, const dem_scene *scene, dem_error *e
 }
 
 // what the scene needs of the kernels
-static void set_features(dem_world *w, const dem_body_def *defs, size_t count)
+static void set_features(dem_world *w, const dem_scene *scene, const dem_body_def *defs, size_t count)
 {
     dem_features *f = &w->features;
     *f = w->laws.needs;
@@ -59,9 +61,14 @@ static void set_features(dem_world *w, const dem_body_def *defs, size_t count)
     f->ledger = w->ledger && (w->laws.damped || f->jkr || f->friction || features_turning(*f) || w->walls.move);
     f->periodic = w->periodic;
     f->moving = w->walls.move;
-    f->reaction = w->walls.servo;
+    f->reaction = w->walls.servo || w->walls.rub;
     f->weighted = w->multiple == DEM_MULTIPLE_MEAN || w->multiple == DEM_MULTIPLE_MERGE;
     f->soft = w->multiple == DEM_MULTIPLE_SOFT;
+    for (size_t i = 0; i < scene->inlet_count; i++)
+        for (size_t k = 0; k < scene->inlets[i].mix_count; k++) {
+            f->offset |= !w->templates.items[scene->inlets[i].mix[k].shape].centred;
+            f->scaled |= scene->inlets[i].mix[k].size.law != DEM_SIZE_AS_IS;
+        }
     for (size_t i = 0; i < count; i++) {
         f->offset |= !w->templates.items[defs[i].shape].centred;
         f->scaled |= defs[i].scale != 1;
@@ -92,6 +99,7 @@ static dem_status make_lists(dem_world *w, dem_error *error)
         w->mesh_touches = dem_alloc_zero(w->segment_count, sizeof *w->mesh_touches);
     w->tallies = dem_alloc_zero(w->segment_count * (1 + DEM_WALL_FORMS), sizeof *w->tallies);
     w->motion_tallies = dem_alloc_zero(w->segment_count, sizeof *w->motion_tallies);
+    w->wear_events = dem_alloc_zero(w->walls.wear ? w->segment_count : 0, sizeof *w->wear_events);
     w->servo_sums = dem_alloc_zero(w->walls.servo ? w->segment_count * w->walls.count : 0, sizeof *w->servo_sums);
     w->asked = dem_alloc(w->bodies.padded, sizeof *w->asked);
     w->strained = dem_alloc(w->features.watch ? w->bodies.padded : 0, sizeof *w->strained);
@@ -99,7 +107,7 @@ static dem_status make_lists(dem_world *w, dem_error *error)
     w->part_asked = dem_alloc_zero((size_t)w->threads + 1, sizeof *w->part_asked);
     w->parts = dem_alloc_zero((size_t)w->threads + 1, sizeof *w->parts);
     w->candidates = dem_alloc_zero((size_t)w->threads, sizeof *w->candidates);
-    if ((used(w, DEM_FORM_MESH) && !w->mesh_touches) || !w->tallies || !w->motion_tallies || !w->servo_sums || !w->asked ||
+    if ((used(w, DEM_FORM_MESH) && !w->mesh_touches) || !w->tallies || !w->motion_tallies || !w->servo_sums || !w->wear_events || !w->asked ||
         !w->part_asked || !w->strained || !w->part_strained || !w->parts || !w->candidates)
         return dem_fail_memory(error);
     size_t longest = 0;
@@ -118,13 +126,25 @@ static dem_status make_lists(dem_world *w, dem_error *error)
 static dem_status set_reach(dem_world *w, dem_error *error)
 {
     double most = 0, least = INFINITY;
+    if (w->population)
+        dem_population_spheres(w, &least, &most);
     for (size_t row = 0; row < w->bodies.count; row++) {
+        if (body_absent(&w->bodies, row))
+            continue;
         const dem_template *t = &w->templates.items[w->bodies.shape[row]];
         most = larger(most, t->radius_max * body_scale(&w->bodies, row));
         least = smaller(least, t->radius_min * body_scale(&w->bodies, row));
     }
-    for (size_t i = 0; (w->features.jkr || w->features.bonded) && most > 0 && i < w->laws.count; i++) {
+    const dem_features *f = &w->features;
+    for (size_t i = 0; (f->jkr || f->bonded || f->user_reaches) && most > 0 && i < w->laws.count; i++) {
         const double *law = w->laws.rows + LAW_SLOTS * i;
+        double user = fmax(law_user_reach(&w->laws, i, most), law_user_reach(&w->laws, i, least / 2));
+        if (!(user <= least))
+            return dem_fail(error, DEM_BAD_INPUT,
+                            "the law of the plug-in would hold until surfaces are %.3g m apart, more than the smallest "
+                            "radius, %.3g m; check its numbers",
+                            user, least);
+        w->reach = larger(w->reach, user);
         double bond = law_bond_reach(law, least * least / (least + most));
         if (!(bond <= least))
             return dem_fail(error, DEM_BAD_INPUT,
@@ -136,8 +156,13 @@ static dem_status set_reach(dem_world *w, dem_error *error)
     return DEM_OK;
 }
 
-static void set_holds(dem_world *w, const dem_body_def *defs, size_t count)
+static void set_holds(dem_world *w, const dem_scene *scene, const dem_body_def *defs, size_t count)
 {
+    for (size_t i = 0; i < scene->inlet_count; i++) {
+        bool sphere = scene->inlets[i].kind == DEM_INLET_SPHERE;
+        w->held |= sphere || scene->dimension == 2;
+        w->kept |= sphere;
+    }
     for (size_t i = 0; i < count; i++) {
         w->held |= defs[i].hold != 0;
         w->kept |= (defs[i].hold & (DEM_HOLD_VELOCITY | DEM_HOLD_SPIN)) != 0;
@@ -160,18 +185,23 @@ static dem_status make_state(dem_world *w, const dem_scene *scene, dem_error *er
     DEM_TRY(dem_templates_create(scene, &w->templates, error));
     DEM_TRY(dem_laws_create(scene, &w->laws, error));
     DEM_TRY(dem_walls_create(w->ctx, scene, &w->walls, error));
-    if (w->walls.servo && w->multiple == DEM_MULTIPLE_SOFT)
+    if ((w->walls.servo || w->walls.rub) && w->multiple == DEM_MULTIPLE_SOFT)
         return dem_fail(error, DEM_BAD_INPUT,
-                        "servo walls cannot measure soft contacts yet; set contacts_between_clumps to \"sum\"");
+                        "servo walls and wear by Archard cannot measure soft contacts yet; set contacts_between_clumps to \"sum\"");
+    DEM_TRY(dem_population_create(w, scene, error));
     DEM_TRY(dem_place_bodies(w, scene, &defs, &count, error));
-    set_holds(w, defs, count);
-    set_features(w, defs, count);
-    dem_features still = w->features;
+    set_holds(w, scene, defs, count);
+    set_features(w, scene, defs, count);
+    size_t instances;
+    const dem_contact_instance *kernels = world_instances(w, &instances);
+    dem_features walls = w->features.user ? features_for_plugin(w->features) : w->features, still = walls;
     still.moving = still.reaction = false;
-    w->instance = dem_kernels_instance(w->kernels, still);
-    w->wall_instance = dem_kernels_instance(w->kernels, w->features);
-    dem_status status = dem_bodies_create(w, defs, count, error);
-    if (w->bodies.count < THREADS_FROM)
+    w->instance = dem_kernels_instance(kernels, still);
+    w->wall_instance = dem_kernels_instance(kernels, walls);
+    dem_status status = dem_bodies_create(w, defs, count, dem_population_rows(w, count), error);
+    if (w->population)
+        w->population->next_id = count;
+    if (w->bodies.count < THREADS_FROM && !dem_population_reaches(w, THREADS_FROM))
         w->threads = 1;
     if (status == DEM_OK)
         status = dem_bonds_create(w, scene, defs, error);
@@ -191,6 +221,8 @@ static dem_status make_state(dem_world *w, const dem_scene *scene, dem_error *er
     for (size_t i = 0; i < count; i++)
         w->asked[i] = (uint32_t)i;
     w->asked_count = count;
+    if (w->population)
+        w->population->search = true;  // also where there is nobody who asks
     // good enough for the margins of the first lists
     w->next_step = w->last_step = w->time_def.step > 0 ? w->time_def.step : dem_step_guess(w);
     DEM_TRY(dem_lists_update(w, error));
@@ -264,6 +296,7 @@ void dem_world_destroy(dem_world *w)
     dem_templates_release(&w->templates);
     dem_laws_release(&w->laws);
     dem_walls_release(&w->walls);
+    dem_population_release(w->population);
     dem_bodies_release(&w->bodies);
     dem_pairs_release(&w->pairs);
     dem_search_destroy(w->search);
@@ -277,13 +310,15 @@ void dem_world_destroy(dem_world *w)
         free(w->candidates[t].work);
     }
     dem_soft_release(w);
+    for (size_t i = 0; w->wear_events && w->walls.wear && i < w->segment_count; i++)
+        free(w->wear_events[i].items);
     dem_team_destroy(w->team);
     dem_views_release(&w->views);
     dem_regions_release(w->regions);
     dem_bonds_release(w->bonds);
     void *all[] = {w->clumps,         w->shape_names, w->shifts,     w->mesh_touches, w->tallies,
                    w->motion_tallies, w->asked,       w->part_asked, w->parts,        w->fresh,
-                   w->candidates,     w->pushes,      w->strained,   w->part_strained, w->servo_sums};
+                   w->candidates,     w->pushes,      w->strained,   w->part_strained, w->servo_sums, w->wear_events};
     for (size_t i = 0; i < sizeof all / sizeof *all; i++)
         free(all[i]);
     free(w);
@@ -335,15 +370,17 @@ static void wall_pass(dem_world *w, size_t begin, size_t end, double kick)
     }
 }
 
-// when all threads have come to their end, adds what they left, too
-static void bond_pass(dem_world *w, size_t begin, size_t end, double kick, size_t part)
+// when all threads have come to their end, adds what they left, too; tells when it was done
+static double bond_pass(dem_world *w, size_t begin, size_t end, double kick, size_t part)
 {
     double t0 = dem_clock();
     dem_bonds_compute(w, begin * DEM_SEGMENT, end * DEM_SEGMENT, kick, part);
     dem_team_meet(w->team);
     dem_bonds_add(w, begin * DEM_SEGMENT, end * DEM_SEGMENT);
+    double t1 = dem_clock();
     if (part == 0)
-        w->clocks[DEM_PASS_BONDS].seconds += dem_clock() - t0;
+        w->clocks[DEM_PASS_BONDS].seconds += t1 - t0;
+    return t1;
 }
 
 static void motion_pass(dem_world *w, size_t begin, size_t end, double kick, size_t part)
@@ -429,13 +466,15 @@ static void step_part(void *user, int which)
     double t1 = dem_clock();
     if (w->walls.servo)
         dem_servo_gather(w, begin, end);
+    if (w->walls.rub)
+        dem_wear_rub(w, begin, end, kick);
     if (w->features.soft)
         dem_soft_pairs(w, begin, end, kick, part);
     else
         contact_pass(w, begin, end, kick);
-    double t2 = dem_clock();
+    double t2 = dem_clock(), bonded = t2;
     if (w->bonds)
-        bond_pass(w, begin, end, kick, part);
+        bonded = bond_pass(w, begin, end, kick, part);
     else
         dem_team_meet(w->team);
     dem_contacts_add_slots(w, begin * DEM_SEGMENT, end * DEM_SEGMENT);
@@ -454,7 +493,7 @@ static void step_part(void *user, int which)
     double t4 = dem_clock();
     if (part == 0) {
         w->clocks[DEM_PASS_WALLS].seconds += t1 - t0;
-        w->clocks[DEM_PASS_PAIRS].seconds += t2 - t1 + (t3 - t2);
+        w->clocks[DEM_PASS_PAIRS].seconds += t2 - t1 + (t3 - bonded);
         w->clocks[DEM_PASS_MOTION].seconds += t4 - t3;
     }
 }
@@ -507,7 +546,14 @@ static dem_status step_once(dem_world *w, dem_error *error)
     join_asked(w);
     if (w->walls.servo)
         dem_servo_move(w);
+    if (w->walls.wear)
+        DEM_TRY(dem_wear_settle(w, error));
     set_time(w);
+    if (w->population) {
+        DEM_TRY(dem_population_feed(w, error));
+        if (w->parts[w->threads] != w->segment_count)
+            split_parts(w);
+    }
     if (w->bonds)
         DEM_TRY(dem_bonds_settle(w, error));
     if (w->asked_count)

@@ -15,6 +15,7 @@ static const dem_case *const parts[] = {
     dem_verify_laws,
     dem_verify_soft,
     dem_verify_walls,
+    dem_verify_bonds,
 };
 
 const dem_case *dem_verify_case(size_t index)

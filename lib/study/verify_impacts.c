@@ -251,6 +251,25 @@ static void mass_at_the_contact(dem_trial *t)
     dem_expect(t, end_restitution(b, DEM_PI / 6), 0.7542, 1e-4, "", "mass of the body, e = 0.8, tilt 30 deg, tail cut");
 }
 
+// ---- the automatic step
+
+// whatever the stiffness: fifty steps in the shortest contact give the same restitution (PHYSICS 6.4)
+static void stiff_auto_step(dem_trial *t)
+{
+    for (int hertz = 0; hertz < 2; hertz++)
+        for (int i = 0; i < 3; i++) {
+            double times = pow(100, i);
+            model *m = falling(t, 1e5 * times, 1, 1);
+            set_restitution(m, 0.7, DEM_TAIL_CUT, hertz);
+            m->materials[0].young = 1e7 * times;
+            m->scene.time.step = 0;
+            m->scene.time.contact_steps = 50;
+            drop(m, model_sphere(m, RADIUS), RADIUS)->position.z = RADIUS + 1e-5;
+            dem_expect(t, impact_of(t).velocity.z, 0.7, 2e-3 * 0.7, "", "%s, stiffness times %g",
+                       hertz ? "hertz" : "linear", times);
+        }
+}
+
 // ---- several spheres in one place
 
 // `count` balls in the place of one, with its mass
@@ -423,6 +442,7 @@ const dem_case dem_verify_impacts[] = {
     {"drop", "heights and times of a ball dropped from 1 m, e = 0.7", "free fall", false, dropped_ball},
     {"dumbbell", "a dumbbell that hits with one end, at six tilts", "rigid impact", false, dumbbell},
     {"local-mass", "the mass that a contact's dashpot sees", "rigid impact", false, mass_at_the_contact},
+    {"stiff-auto-step", "stiffness times 1e4 with an automatic step", "the restitution asked", false, stiff_auto_step},
     {"coincident-sum", "spheres in one place add up", "damping ratio by the root of their number", false,
      coincident_sum},
     {"coincident-mean-merge", "averaged or merged, spheres in one place are one sphere", "one sphere", false,

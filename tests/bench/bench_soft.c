@@ -190,6 +190,7 @@ static flight perfect(flight f, double mass, double step, int steps)
         dem_vec3 r = lowest(f.q), force = v3(0, 0, 0), n = v3(0, 0, 1);
         double depth = -(f.x.z + r.z);
         if (depth > 0) {
+            r.z = -f.x.z;  // the contact point is the wall's
             dem_vec3 v = v3_add(f.v, v3_cross(f.spin, r)), arm = v3_cross(r, n);
             double m = 1 / (1 / mass + v3_dot(arm, by_inverse(f.q, inertia, arm)));
             double normal = fmax(0, STIFFNESS * depth - 2 * zeta * sqrt(STIFFNESS * m) * v.z);

@@ -23,6 +23,7 @@ typedef enum dem_normal_law {
     DEM_NORMAL_HERTZ,   ///< F = 4/3 E* sqrt(R*) overlap^1.5
     DEM_NORMAL_JKR,     ///< soft adhesive surfaces, which hold on beyond the touch (Johnson, Kendall & Roberts 1971)
     DEM_NORMAL_DMT,     ///< the same less 2 pi w R*, the pull of stiff dry adhesive surfaces (Derjaguin et al. 1975)
+    DEM_NORMAL_PLUGIN,  ///< a law of the user's (dem/law.h), which says all forces
 } dem_normal_law;
 
 typedef enum dem_damping_law {
@@ -76,11 +77,20 @@ typedef enum dem_bonded {
     DEM_BONDED_AT_TOUCH,  ///< these, and all that come to touch later
 } dem_bonded;
 
+/// A number of a law of the user's.
+typedef struct dem_law_value {
+    const char *name;
+    double value;
+} dem_law_value;
+
 /// The law between two materials.
 typedef struct dem_pair_law {
     uint32_t materials[2];
     dem_effective_mass effective_mass;
     dem_normal_law normal;
+    const char *plugin;               ///< resolved path of the plug-in
+    const dem_law_value *parameters;  ///< those of its law's numbers that are given
+    size_t parameter_count;
     double stiffness;  ///< of the linear law [N/m]; 0: k = E A / L from the materials
     dem_damping_law damping;
     double restitution;   ///< 0..1 [-]
@@ -193,6 +203,45 @@ typedef struct dem_bodies_def {
     size_t fill_count;
 } dem_bodies_def;
 
+typedef enum dem_inlet_kind { DEM_INLET_BOX, DEM_INLET_SPHERE } dem_inlet_kind;
+
+/// A place where bodies come from while the scene runs, never into an overlap: where there is no room they wait. Each
+/// is turned at random, uniformly over all orientations.
+///
+/// In a box a body appears at a random place and is free at once. In a generator sphere it appears with its centre of
+/// mass at the sphere's and keeps its velocity and spin, whatever it meets, until it is wholly outside; the next one
+/// comes after that.
+typedef struct dem_inlet_def {
+    const char *name;
+    dem_inlet_kind kind;
+    dem_vec3 low, high;  ///< of a box, which holds every sphere of a body as it appears [m]
+    dem_vec3 centre;     ///< of a generator sphere [m]
+    double radius;       ///< of a generator sphere, not less than that of the largest body [m]
+    const dem_mix_def *mix;
+    size_t mix_count;
+    bool share_by_mass;
+    double rate;             ///< bodies [1/s], or mass [kg/s]
+    bool by_mass;            ///< the rate is of mass
+    dem_vec3 velocity;       ///< mean [m/s]
+    double velocity_spread;  ///< standard deviation of each component [m/s]
+    dem_vec3 spin;           ///< mean, axes of space [rad/s]
+    double spin_spread;      ///< standard deviation of each component [rad/s]
+    double start, stop;      ///< from when to when [s]; stop INFINITY: never
+    size_t count;            ///< bodies in all; 0: no end
+    double gap;              ///< least distance to others where a body appears [m]
+    uint64_t seed;
+} dem_inlet_def;
+
+typedef enum dem_wall_kind {
+    DEM_WALL_PLANE,
+    DEM_WALL_CYLINDER,
+    DEM_WALL_MESH,
+    DEM_WALL_CONE,       ///< with ends solid on both sides, also between equal radii and of no length
+    DEM_WALL_SPHERE,
+    DEM_WALL_DISC,       ///< solid on both sides
+    DEM_WALL_RECTANGLE,  ///< solid on both sides
+} dem_wall_kind;
+
 /// What a bond does to the contact of the two spheres it joins, while it lives.
 typedef enum dem_bond_contact {
     DEM_BOND_PARALLEL,  ///< both act
@@ -215,8 +264,6 @@ typedef struct dem_bond_def {
     double damping;              ///< ratio of the dashpots of all four ways [-]
     dem_bond_contact contact;
 } dem_bond_def;
-
-typedef enum dem_wall_kind { DEM_WALL_PLANE, DEM_WALL_CYLINDER, DEM_WALL_MESH } dem_wall_kind;
 
 /// A sine about the place at time 0: the wall is shifted by `shift` (sin(2 pi f t + phase) - sin(phase)), and turned
 /// likewise.
@@ -259,15 +306,37 @@ typedef struct dem_servo_def {
     uint32_t partner;            ///< 1 + the wall that goes as fast the other way, both by the mean; 0: none
 } dem_servo_def;
 
+typedef enum dem_wear_law {
+    DEM_WEAR_NONE,
+    DEM_WEAR_FINNIE,   ///< by the impacts of bodies (1960)
+    DEM_WEAR_ARCHARD,  ///< by sliding under a force (1953)
+} dem_wear_law;
+
+/// What bodies take off a wall; see lib/sim/wear.h. The wall keeps its form.
+typedef struct dem_wear_def {
+    dem_wear_law law;
+    double constant;     ///< K of Finnie, normal over tangential force [-]
+    double pressure;     ///< p of Finnie, at which the wall flows [Pa]
+    double psi;          ///< of Finnie: length of the cut over its depth [-]
+    double roughness;    ///< of Finnie: share of the grains that cut [-]
+    double coefficient;  ///< of Archard [-]
+    double hardness;     ///< of Archard [Pa]
+} dem_wear_def;
+
 /// A rigid wall. A box is six planes. Geometry as it stands at time 0.
 typedef struct dem_wall_def {
     const char *name;
     dem_wall_kind kind;
     uint32_t material;
-    dem_vec3 point;         ///< of a plane; of a cylinder's axis [m]
-    dem_vec3 normal;        ///< unit, towards the bodies; of a cylinder: its axis
-    double radius;          ///< of a cylinder [m]
-    bool outside;           ///< the bodies are outside of a cylinder
+    dem_vec3 point;         ///< of a plane; of a cylinder's axis; where a cone begins; a centre [m]
+    dem_vec3 normal;        ///< unit, towards the bodies; of a cylinder or cone: its axis
+    double radius;          ///< of a cylinder, sphere or disc; of a cone where it begins [m]
+    bool outside;           ///< the bodies are outside of a cylinder, a sphere, a cone without an end
+    double length;          ///< of a cone; INFINITY: without an end, from its tip on [m]
+    double end_radius;      ///< of a cone with ends [m]
+    double angle;           ///< of a cone without an end, between axis and surface [rad]
+    dem_vec3 along;         ///< direction of a rectangle's first side
+    double size[2];         ///< of a rectangle [m]
     const char *mesh_file;  ///< resolved path
     dem_mesh mesh;          ///< [m]; read from mesh_file where that is given
     dem_vec3 velocity;      ///< [m/s]
@@ -279,9 +348,10 @@ typedef struct dem_wall_def {
     dem_wall_table table;  ///< comes on top, and is not stopped
     dem_vec3 axis;         ///< unit, that oscillations and table turn about; along `spin` where that is not 0
     dem_servo_def servo;   ///< comes on top, too
+    dem_wear_def wear;     ///< not of planes and cylinders without an end
 } dem_wall_def;
 
-typedef enum dem_leaving { DEM_LEAVING_ERROR, DEM_LEAVING_IGNORE } dem_leaving;
+typedef enum dem_leaving { DEM_LEAVING_ERROR, DEM_LEAVING_IGNORE, DEM_LEAVING_DELETE } dem_leaving;
 
 typedef struct dem_domain_def {
     dem_vec3 low, high;  ///< infinite where not given [m]
@@ -399,6 +469,8 @@ typedef struct dem_scene {
     dem_bodies_def bodies;
     const dem_wall_def *walls;
     size_t wall_count;
+    const dem_inlet_def *inlets;
+    size_t inlet_count;
     const dem_bond_def *bonds;  ///< of two that fit the same spheres the first counts
     size_t bond_count;
     dem_damping_def damping;

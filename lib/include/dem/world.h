@@ -34,7 +34,7 @@ DEM_API double dem_world_critical_step(dem_world *world);
 /// `body` counts as in the views.
 DEM_API void dem_world_push(dem_world *world, size_t body, dem_vec3 force, dem_vec3 moment);
 
-/// The bodies in the order they were placed, at time t. Arrays of `count`, valid until the world steps again.
+/// The bodies that there are, in the order they were placed or came, at time t. Arrays of `count`, valid until the world steps again.
 typedef struct dem_body_view {
     size_t count;
     const uint32_t *shape;         ///< index into the scene's shapes
@@ -47,6 +47,7 @@ typedef struct dem_body_view {
     const dem_vec3 *force;         ///< of contacts and walls [N]
     const dem_vec3 *moment;        ///< about the centre of mass [N m]
     const uint32_t *coordination;  ///< number of bodies and walls touched
+    const uint32_t *id;            ///< number of the body by birth, which no other body ever has; NULL: its place
 } dem_body_view;
 
 /// One sphere that touches another body's sphere or a wall.
@@ -92,6 +93,10 @@ typedef struct dem_wall_view {
     dem_vec3 force;   ///< of the bodies on the wall [N]
     dem_vec3 moment;  ///< about the wall's `through` [N m]
     size_t contacts;
+    double pressure;     ///< with which a servo wall pushes over its area [Pa]; NAN: no servo, or no area
+    double worn;         ///< volume taken off so far [m^3]
+    const double *wear;  ///< of that, by triangle of the mesh as it was given, or of the whole wall [m^3]; NULL: none
+    size_t wear_count;
 } dem_wall_view;
 
 /// What was found in a region that the scene measures. Pressure is positive.
@@ -121,12 +126,15 @@ typedef struct dem_energy {
     double work;                 ///< done by moving walls, pushes, and bodies whose motion is given
     double start;                ///< kinetic + rotational + potential + elastic at the scene's start
     double error;  ///< imbalance of all of these over the largest energy turned over [-]; NAN: no ledger kept
+    double brought;  ///< by bodies that came, less what those took that left
 } dem_energy;
 
 typedef struct dem_figures {
     double time;  ///< [s]
     uint64_t step;
     size_t bodies, spheres;
+    size_t came, left;           ///< bodies, through inlets and out of the domain, since the scene's start
+    double came_mass, left_mass; ///< their mass [kg]
     size_t contacts;  ///< touching sphere pairs of different bodies
     size_t wall_contacts;
     double coordination;           ///< mean number of bodies and walls a body touches [-]
@@ -140,12 +148,24 @@ typedef struct dem_figures {
     dem_energy energy;
 } dem_figures;
 
+/// What an inlet has done by now.
+typedef struct dem_inlet_view {
+    const char *name;
+    size_t bodies;         ///< that came
+    double mass;           ///< of these [kg]
+    double asked;          ///< by the rate up to now: bodies [-] or mass [kg]
+    double behind;         ///< what has not come of this for want of room: bodies [-] or mass [kg]
+    bool by_mass;          ///< `asked` and `behind` are masses
+    bool over;             ///< no more will come
+} dem_inlet_view;
+
 /// Brings the views to time t; `contacts` of dem_world_contacts too. Errors: DEM_NO_MEMORY.
 DEM_API dem_status dem_world_measure(dem_world *world, dem_error *error);
 /// All as of the last dem_world_measure.
 DEM_API const dem_figures *dem_world_figures(const dem_world *world);
 DEM_API dem_body_view dem_world_bodies(const dem_world *world);
 DEM_API const dem_contact *dem_world_contacts(const dem_world *world, size_t *count);
+DEM_API const dem_inlet_view *dem_world_inlets(const dem_world *world, size_t *count);
 /// All that were ever made, broken ones too.
 DEM_API const dem_bond_view *dem_world_bonds(const dem_world *world, size_t *count);
 DEM_API const dem_wall_view *dem_world_walls(const dem_world *world, size_t *count);
