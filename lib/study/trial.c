@@ -131,11 +131,11 @@ double dem_trial_time(const dem_trial *t)
     return ready(t) ? dem_world_time(t->world) : NAN;
 }
 
-dem_vec3 dem_trial_wall_force(dem_trial *t, size_t wall)
+dem_wall_view dem_trial_wall(dem_trial *t, size_t wall)
 {
     size_t count = 0;
     const dem_wall_view *walls = look(t) ? dem_world_walls(t->world, &count) : NULL;
-    return wall < count ? walls[wall].force : v3(NAN, NAN, NAN);
+    return wall < count ? walls[wall] : (dem_wall_view){.force = {NAN, NAN, NAN}, .worn = NAN};
 }
 
 // ---- findings

@@ -72,8 +72,8 @@ const dem_figures *dem_trial_figures(dem_trial *trial);
 /// Sphere and sphere or wall that touch; NULL and 0 where none does.
 const dem_contact *dem_trial_contacts(dem_trial *trial, size_t *count);
 double dem_trial_time(const dem_trial *trial);
-/// The force of the bodies on a wall.
-dem_vec3 dem_trial_wall_force(dem_trial *trial, size_t wall);
+/// Forces and wear of NAN after a failure.
+dem_wall_view dem_trial_wall(dem_trial *trial, size_t wall);
 
 /// Notes a number that is to be `want` within `tolerance`; `format` tells what it is.
 void dem_expect(dem_trial *trial, double got, double want, double tolerance, const char *unit, const char *format, ...)

@@ -16,6 +16,7 @@ static const dem_case *const parts[] = {
     dem_verify_soft,
     dem_verify_walls,
     dem_verify_bonds,
+    dem_verify_inlets,
 };
 
 const dem_case *dem_verify_case(size_t index)

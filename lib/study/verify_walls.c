@@ -29,7 +29,7 @@ static void press(dem_trial *t)
     double largest = 0, off = 0;
     dem_trial_start(t);
     for (int i = 0; i < 400 && dem_trial_step(t, 50); i++) {
-        double force = dem_trial_wall_force(t, 1).z;
+        double force = dem_trial_wall(t, 1).force.z;
         largest = fmax(largest, force);
         off = i > 300 ? fmax(off, fabs(force / 20 - 1)) : 0;
     }
@@ -92,8 +92,37 @@ static void triaxial(dem_trial *t)
     dem_expect_least(t, scale * (v ? v->deviatoric_stress : NAN), 2e3 * sqrt(3) * 0.999, "Pa", "deviatoric stress");
 }
 
+// volume that one impact takes off, by its angle from the surface: K = 2, psi = 2, corrected for roughness
+static void finnie(dem_trial *t)
+{
+    static const double table[][2] = {{10, 0.0314448843}, {30, 0.03125}, {60, 0.0104166667}};  // angle, Q p / (m V^2)
+    const double speed = 2, pressure = 1e9, mass = 2500 * 4 * DEM_PI / 3 * RADIUS * RADIUS * RADIUS;
+    for (size_t i = 0; i < sizeof table / sizeof *table; i++) {
+        double angle = table[i][0] * DEM_PI / 180;
+        model *m = dem_trial_model(t);
+        model_body(m, model_sphere(m, RADIUS), v3(0, 0, 1.05 * RADIUS))->velocity =
+            v3(speed * cos(angle), 0, -speed * sin(angle));
+        m->walls[0] = (dem_wall_def){.kind = DEM_WALL_RECTANGLE,
+                                     .normal = {0, 0, 1},
+                                     .along = {1, 0, 0},
+                                     .size = {2, 2},
+                                     .wear = {DEM_WEAR_FINNIE,
+                                              .constant = 2,
+                                              .pressure = pressure,
+                                              .psi = 2,
+                                              .roughness = 0.5}};
+        m->scene.wall_count = 1;
+        m->scene.time.step = 1e-6;
+        dem_trial_start(t);
+        dem_trial_step(t, 20000);
+        dem_expect(t, dem_trial_wall(t, 0).worn * pressure / (mass * speed * speed), table[i][1], 1e-9, "",
+                   "volume p / (m V^2) at %g degrees", table[i][0]);
+    }
+}
+
 const dem_case dem_verify_walls[] = {
     {"servo-press", "a servo wall presses a ball", "springs in series", false, press},
     {"servo-triaxial", "grains between servo walls have their stresses", "sum of F l / V", false, triaxial},
+    {"wear-finnie", "one impact wears a wall", "Finnie 1960, the table of the reference", false, finnie},
     {0},
 };
