@@ -385,6 +385,35 @@ static void saved(dem_world *w, void **bytes, size_t *size)
     check_ok(dem_world_save(w, bytes, size, &error), error);
 }
 
+// bodies that wait for room look for it elsewhere every time
+static void what_waits_goes_on_bit_for_bit(void **state)
+{
+    (void)state;
+    feed *f = feed_new();
+    model_box(f->m, v3(0, 0, 0.4), v3(0.1, 0.1, 0.5));
+    f->inlets[0].high = v3(0.1, 0.1, 0.5);
+    f->inlets[0].rate = 2000;
+    f->inlets[0].velocity = v3(0, 0, 0);
+    dem_world *w = model_world(f->m, 1), *again = model_world(f->m, 1);
+    void *bytes;
+    size_t size;
+    dem_error error;
+    while (w->population->inlets[0].looks < 3)
+        run_steps(w, 5);
+    saved(w, &bytes, &size);
+    check_ok(dem_world_restore(again, bytes, size, &error), error);
+    uint64_t before = w->population->came;
+    while (w->population->came < before + 2) {
+        run_steps(w, 10);
+        run_steps(again, 10);
+    }
+    check(dem_world_hash(w) == dem_world_hash(again));
+    free(bytes);
+    dem_world_destroy(w);
+    dem_world_destroy(again);
+    feed_free(f);
+}
+
 // two inlets of both kinds, a world that has grown, a body inside of a generator
 static void a_restored_world_goes_on_bit_for_bit(void **state)
 {
@@ -499,6 +528,7 @@ int main(void)
         cmocka_unit_test(what_leaves_is_deleted_and_counted),
         cmocka_unit_test(the_ledger_closes_and_lists_stay_true),
         cmocka_unit_test(any_number_of_threads_gives_the_same_bits),
+        cmocka_unit_test(what_waits_goes_on_bit_for_bit),
         cmocka_unit_test(a_restored_world_goes_on_bit_for_bit),
         cmocka_unit_test(small_stiff_bodies_lower_an_automatic_step),
         cmocka_unit_test(inlets_that_cannot_be_are_refused),
