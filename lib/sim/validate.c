@@ -168,8 +168,8 @@ static void check_structures(const dem_world *w, dem_truth *truth)
     }
     for (size_t k = 0; k < (w->bodies.momentum_rows - w->bodies.padded) * DEM_ROW; k++)
         truth->unsound += w->bodies.momentum[w->bodies.padded * DEM_ROW + k] != 0;
-    for (size_t row = w->bodies.count; row < w->bodies.padded; row++)
-        for (int k = 0; k < 6; k++)
+    for (size_t row = 0; row < w->bodies.padded; row++)
+        for (int k = 0; k < 6 && (row >= w->bodies.count || body_absent(&w->bodies, row)); k++)
             truth->unsound += w->bodies.momentum[DEM_ROW * row + (size_t)k] != 0;
 }
 
