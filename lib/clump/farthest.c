@@ -145,11 +145,11 @@ static void patch_evaluate(const search *s, cell *c)
 {
     dem_ball ball = s->boundary->balls[c->index];
     dem_vec3 p = v3_along(ball.centre, ball.radius, c->middle);
-    double enough = threshold(s) - c->reach, near = v3_distance(p, c->other);  // a point of the mesh
+    double enough = threshold(s) - c->reach;
     c->found = c->bound = -INFINITY;
-    if (enough > 0 && (near <= enough || dem_tree_within(s->mesh, p, enough)))
+    if (enough > 0 && dem_tree_within(s->mesh, p, enough))
         return;
-    double level = s->sign * dem_mesh_level(s->mesh, p, near * (1 + 1e-9), &c->other);
+    double level = s->sign * dem_mesh_level(s->mesh, p, INFINITY, &c->other);
     c->bound = level + c->reach;
     if (level >= 0)
         c->bound = fmin(c->bound, patch_farthest(s, c, c->other));
