@@ -361,7 +361,8 @@ dem_status dem_bonds_make(dem_world *w, dem_error *error)
     }
     set_due(b);
     warn_of_overlaps(w, old);
-    qsort(b->items, b->count, sizeof *b->items, by_spheres);
+    if (b->count)
+        qsort(b->items, b->count, sizeof *b->items, by_spheres);
     if (!dem_bonds_list(w))
         return dem_fail_memory(error);
     if (b->instead)

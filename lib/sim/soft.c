@@ -198,6 +198,8 @@ void dem_soft_records(dem_world *w, size_t segment, int form, dem_contact_record
 {
     const dem_contacts *contacts = form < 0 ? &w->contacts : &w->wall_contacts[form];
     const dem_segment *s = &contacts->segments[segment];
+    if (s->begin == s->end)
+        return;
     memset(records, 0, (s->end - s->begin) * sizeof *records);
     w->soft.kernels->segment(w, segment, form, 0, w->soft.work[0], records);
 }

@@ -231,13 +231,14 @@ static bool put_lists(wall_look *look, dem_wall_form form, size_t *needed)
         if (list->form != form)
             continue;
         dem_segment *s = &contacts->segments[list->segment];
-        good = dem_extras_keep(&extras, s, look->items + list->begin, list->count, &kept);
+        const dem_contact_item *items = list->count ? look->items + list->begin : NULL;
+        good = dem_extras_keep(&extras, s, items, list->count, &kept);
         size_t full = (list->count + DEM_BLOCK_LANES - 1) / DEM_BLOCK_LANES * DEM_BLOCK_LANES;
         s->end = s->begin + full;
         s->dirty = false;
         for (size_t k = 0; k < full; k++)
             dem_contact_put(&contacts->columns, segment_place(s, k),
-                            k < list->count ? &look->items[list->begin + k] : &idle);
+                            k < list->count ? &items[k] : &idle);
         if (good)
             dem_extras_give(&extras, s, list->count, full, &kept);
         if (form == DEM_FORM_MESH) {
