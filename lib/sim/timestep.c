@@ -124,6 +124,7 @@ static dem_law_forces user_forces(const dem_world *w, const double *law, const d
                                .radius_b = t->radius[1] > 0 ? t->radius[1] : INFINITY,
                                .reduced = t->reduced,
                                .mass = mass,
+                               .inverse_mass = 1 / mass,
                                .step = w->next_step,
                                .next_step = w->next_step};
     dem_law_memory memory = {.vector = {{0, 0, 0}}};

@@ -64,6 +64,7 @@ DEM_INLINE void user_lane(const dem_features f, const double *parameters, double
                          .radius_b = wall ? INFINITY : batch->at[AT_RADIUS_B][i],
                          .reduced = batch->at[AT_REDUCED][i],
                          .mass = 1 / batch->at[AT_MASS][i],
+                         .inverse_mass = batch->at[AT_MASS][i],
                          .step = step,
                          .next_step = next_step};
     if (f.user_turns)

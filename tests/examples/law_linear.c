@@ -26,7 +26,7 @@ static dem_law_forces law(const dem_law_contact *c, const double *p, dem_law_mem
     double cap = p[FRICTION] * f.push, part = dem_law_cap(whole, cap);
     f.slide = dem_law_scaled(whole, part);
     // while it slides, the spring keeps what it has, up to the cap
-    bool full = (part < 1) & (dem_law_cap(dem_law_scaled(spring, k), cap) < 1);
+    bool full = (part < 1) & dem_law_longer(dem_law_scaled(spring, k), cap);
     dem_vec3 capped = dem_law_scaled(f.slide, 1 / k);
     m->vector[0].x = full ? capped.x : spring.x;
     m->vector[0].y = full ? capped.y : spring.y;

@@ -43,6 +43,7 @@ typedef struct dem_law_contact {
     double reduced;             ///< R* = R_a R_b / (R_a + R_b), of a wall R_a [m]
     double mass;                ///< effective mass, by the scene's effective_mass [kg]
     double step, next_step;     ///< time since the last step, 0 at the start; time to the next [s]
+    double inverse_mass;        ///< 1 / mass [1/kg]
 } dem_law_contact;
 
 /// What it remembers from step to step: all 0 where a contact begins. Vectors are turned with the contact: into the
@@ -133,22 +134,28 @@ static inline dem_vec3 dem_law_across(dem_vec3 a, dem_vec3 n)
 {
     return dem_law_along(a, -dem_law_dot(a, n), n);
 }
+/// Whether a vector is longer than `most`.
+static inline bool dem_law_longer(dem_vec3 a, double most)
+{
+    return most * most < dem_law_dot(a, a);
+}
 /// By how much to shorten a vector so that it is no longer than `most`: 1 or less.
 static inline double dem_law_cap(dem_vec3 a, double most)
 {
-    double size2 = dem_law_dot(a, a);
-    return most * most < size2 ? most / sqrt(size2 + 1e-300) : 1;
+    // nothing costly stands behind a question: that would keep the loop from being made into vector code
+    double part = most / sqrt(dem_law_dot(a, a) + 1e-300);
+    return part < 1 ? part : 1;
 }
 
 /// What a normal dashpot adds to the push, of second order in the step as those of the built-in laws are. `cut`: the
 /// law cuts the push at 0.
 static inline double dem_law_dashpot(const dem_law_contact *c, double damping, bool cut)
 {
-    double gone = c->overlap / (c->step > 0 ? c->step : c->next_step), speed = fabs(c->vn);
+    double per_step = 1 / (c->step > 0 ? c->step : c->next_step), gone = c->overlap * per_step, speed = fabs(c->vn);
     double acts = dem_law_least(1.5 * gone, dem_law_most(speed, 2 * speed - 0.5 * gone));
     double leaves = cut ? c->vn : acts;
     acts = c->vn < 0 ? -acts : leaves;
-    return -damping / (1 + 0.25 * c->step * damping / c->mass) * acts;
+    return -damping / (1 + 0.25 * c->step * (damping * c->inverse_mass)) * acts;
 }
 
 #ifdef __cplusplus

@@ -51,7 +51,9 @@ static inline double dem_user_no_reach(const double *parameters, double reduced)
     X(user_spheres, .local_mass = true, .ledger = true)                                                                \
     X(user_clumps, .local_mass = true, .ledger = true, .offset = true)                                                 \
     X(user_spheres_auto, .local_mass = true, .ledger = true, .watch = true)                                            \
-    X(user_clumps_auto, .local_mass = true, .ledger = true, .offset = true, .watch = true)
+    X(user_sizes, .local_mass = true, .ledger = true, .offset = true, .scaled = true)                                  \
+    X(user_clumps_auto, .local_mass = true, .ledger = true, .offset = true, .watch = true)                             \
+    X(user_sizes_auto, .local_mass = true, .ledger = true, .offset = true, .scaled = true, .watch = true)
 #endif
 
 #define USER_ANY(name, wall, form)                                                                                     \
@@ -69,6 +71,8 @@ static inline double dem_user_no_reach(const double *parameters, double reduced)
 #define DEM_LAW_PLUGIN_OF(function, reach_function, reaches, ...)                                                      \
     static const dem_law_spec dem_user_spec = {__VA_ARGS__};                                                           \
     enum { dem_user_reaches = reaches };                                                                               \
+    /* or it would be called, lane by lane */                                                                          \
+    static inline __attribute__((always_inline)) dem_law_function function;                                            \
     static inline dem_law_forces dem_user_law(const dem_law_contact *c, const double *parameters, dem_law_memory *m)   \
     {                                                                                                                  \
         return function(c, parameters, m);                                                                             \
