@@ -44,8 +44,8 @@ static void put_row(dem_buffer *out, const dem_bond_def *defs, const dem_bond_vi
     dem_buffer_text(out, "\n");
 }
 
-dem_status dem_breakages_write(const char *directory, const dem_bond_def *defs, const dem_bond_view *bonds,
-                               size_t count, dem_error *error)
+dem_status dem_breakages_write(dem_file_queue *queue, const char *directory, const dem_bond_def *defs,
+                               const dem_bond_view *bonds, size_t count, dem_error *error)
 {
     const dem_bond_view **broken = dem_alloc(count, sizeof *broken);
     char *path = dem_path_join(directory, "bonds.csv");
@@ -62,7 +62,7 @@ dem_status dem_breakages_write(const char *directory, const dem_bond_def *defs, 
         put_row(&out, defs, broken[i]);
     dem_status status = broken && path && !out.failed ? dem_folder_create(directory, error) : dem_fail_memory(error);
     if (status == DEM_OK)
-        status = dem_file_write(path, out.data, out.size, error);
+        status = dem_file_queue_put(queue, path, &out, error);
     dem_buffer_release(&out);
     free(broken);
     free(path);

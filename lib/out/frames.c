@@ -1,6 +1,5 @@
 #include "out/frames.h"
 
-#include <dirent.h>
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -46,27 +45,6 @@ static dem_status write_shapes(const dem_frames *f, dem_error *error)
     }
     free(names);
     return status;
-}
-
-// removes the numbered files of a folder from `first` on
-static dem_status remove_frames(const dem_frames *f, const char *folder, size_t first, dem_error *error)
-{
-    char *path = dem_path_join(f->directory, "%s", folder);
-    if (!path)
-        return dem_fail_memory(error);
-    DIR *listing = opendir(path);
-    const struct dirent *entry;
-    while (listing && (entry = readdir(listing))) {
-        const char *name = entry->d_name, *end = name + strlen(name);
-        long number;
-        const char *rest = *name >= '0' && *name <= '9' ? dem_parse_long(name, end, &number) : NULL;
-        if (rest && rest - name >= 6 && strcmp(rest, ".vtp") == 0 && (size_t)number >= first)
-            unlinkat(dirfd(listing), name, 0);
-    }
-    if (listing)
-        closedir(listing);
-    free(path);
-    return DEM_OK;
 }
 
 // what an earlier run left, which would name frames that are gone
@@ -119,8 +97,8 @@ static dem_status begin(dem_frames *f, dem_error *error)
     DEM_TRY(dem_pvd_open(f->directory, INDEX, f->def.resume, &f->index, error));
     DEM_TRY(dem_pvd_open(f->directory, WALLS, f->def.resume, &f->walls, error));
     f->index.queue = f->walls.queue = f->def.queue;
-    DEM_TRY(remove_frames(f, "frames", f->index.count, error));
-    DEM_TRY(remove_frames(f, "walls", f->index.count, error));
+    DEM_TRY(dem_pvd_remove(f->directory, "frames", "", f->index.count, error));
+    DEM_TRY(dem_pvd_remove(f->directory, "walls", "", f->index.count, error));
     return write_shapes(f, error);
 }
 

@@ -1,6 +1,5 @@
 #include "out/network.h"
 
-#include <dirent.h>
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -17,39 +16,17 @@ struct dem_network {
     char *directory;
     const char *name;  // of the index and of the files
     dem_domain_def domain;
+    dem_file_queue *queue;
     dem_pvd index;
 };
 
 // ---- beginning
 
-// the numbered files from `first` on
-static dem_status remove_files(const dem_network *n, size_t first, dem_error *error)
-{
-    char *path = dem_path_join(n->directory, "frames");
-    if (!path)
-        return dem_fail_memory(error);
-    DIR *listing = opendir(path);
-    const struct dirent *entry;
-    while (listing && (entry = readdir(listing))) {
-        size_t length = strlen(n->name);
-        const char *name = entry->d_name, *at = name + length + 1;
-        long number;
-        if (strncmp(name, n->name, length) != 0 || name[length] != '_')
-            continue;
-        const char *rest = dem_parse_long(at, name + strlen(name), &number);
-        if (rest && rest - at >= 6 && strcmp(rest, ".vtp") == 0 && number >= 0 && (size_t)number >= first)
-            unlinkat(dirfd(listing), name, 0);
-    }
-    if (listing)
-        closedir(listing);
-    free(path);
-    return DEM_OK;
-}
-
 static dem_status begin(dem_network *n, double resume, dem_error *error)
 {
-    char index_name[24];
+    char index_name[24], prefix[24];
     snprintf(index_name, sizeof index_name, "%s.pvd", n->name);
+    snprintf(prefix, sizeof prefix, "%s_", n->name);
     char *folder = n->directory ? dem_path_join(n->directory, "frames") : NULL;
     dem_status status = folder ? dem_folder_create(folder, error) : dem_fail_memory(error);
     free(folder);
@@ -62,17 +39,19 @@ static dem_status begin(dem_network *n, double resume, dem_error *error)
         free(index);
     }
     DEM_TRY(dem_pvd_open(n->directory, index_name, resume, &n->index, error));
-    return remove_files(n, n->index.count, error);
+    n->index.queue = n->queue;
+    return dem_pvd_remove(n->directory, "frames", prefix, n->index.count, error);
 }
 
-dem_status dem_network_open(const char *directory, const char *name, const dem_domain_def *domain, double resume,
-                            dem_network **network, dem_error *error)
+dem_status dem_network_open(const char *directory, const char *name, const dem_domain_def *domain,
+                            dem_file_queue *queue, double resume, dem_network **network, dem_error *error)
 {
     dem_network *n = *network = dem_alloc_zero(1, sizeof *n);
     if (!n)
         return dem_fail_memory(error);
     n->domain = *domain;
     n->name = name;
+    n->queue = queue;
     n->directory = strdup(directory);
     dem_status status = begin(n, resume, error);
     if (status != DEM_OK) {
@@ -119,13 +98,6 @@ static void release_columns(columns *c)
         free(all[i]);
 }
 
-enum { FILE_BYTES = 40 };
-
-static void next_file(const dem_network *n, char name[static FILE_BYTES])
-{
-    snprintf(name, FILE_BYTES, "frames/%s_%06zu.vtp", n->name, n->index.count);
-}
-
 // of a body's images the one that is nearest to a point
 static dem_vec3 image_near(const dem_domain_def *d, dem_vec3 x, dem_vec3 point)
 {
@@ -156,43 +128,43 @@ static void set_line(const dem_network *n, columns *c, size_t i, const dem_body_
     c->wall[i] = wall ? (int32_t)contact->wall : -1;
 }
 
-static dem_status write_lines(const char *path, double time, const columns *c, size_t count, dem_error *error)
+// the next file, a cell for each line
+static dem_status write_lines(dem_network *n, double time, const dem_vec3 *points, const uint32_t *ends, size_t count,
+                              const dem_vtp_array *arrays, size_t array_count, dem_error *error)
 {
-    const dem_vtp_array arrays[] = {{"normal_force", DEM_VTP_FLOAT64, 1, c->normal_force},
-                                    {"friction_force", DEM_VTP_FLOAT64, 1, c->friction_force},
-                                    {"force", DEM_VTP_FLOAT64, 3, c->force},
-                                    {"overlap", DEM_VTP_FLOAT64, 1, c->overlap},
-                                    {"kind", DEM_VTP_INT32, 1, c->kind},
-                                    {"body", DEM_VTP_INT32, 1, c->body},
-                                    {"other", DEM_VTP_INT32, 1, c->other},
-                                    {"wall", DEM_VTP_INT32, 1, c->wall}};
-    return dem_vtp_write(path,
-                         &(dem_vtp){.time = time,
-                                    .points = c->points,
-                                    .point_count = 2 * count,
-                                    .lines = c->ends,
-                                    .line_count = count,
-                                    .cell_arrays = arrays,
-                                    .cell_array_count = sizeof arrays / sizeof *arrays},
-                         error);
+    char name[40];
+    snprintf(name, sizeof name, "frames/%s_%06zu.vtp", n->name, n->index.count);
+    char *path = dem_path_join(n->directory, "%s", name);
+    const dem_vtp vtp = {.time = time,
+                         .points = points,
+                         .point_count = 2 * count,
+                         .lines = ends,
+                         .line_count = count,
+                         .cell_arrays = arrays,
+                         .cell_array_count = array_count};
+    dem_status status = path ? dem_vtp_queue(n->queue, path, &vtp, error) : dem_fail_memory(error);
+    free(path);
+    return status == DEM_OK ? dem_pvd_add(&n->index, time, name, NULL, error) : status;
 }
 
 dem_status dem_network_write(dem_network *n, double time, const dem_body_view *bodies, const dem_contact *contacts,
                              size_t count, dem_error *error)
 {
-    char name[FILE_BYTES];
     columns c;
-    next_file(n, name);
-    char *path = dem_path_join(n->directory, "%s", name);
-    dem_status status = make_columns(&c, count) && path ? DEM_OK : dem_fail_memory(error);
+    dem_status status = make_columns(&c, count) ? DEM_OK : dem_fail_memory(error);
     for (size_t i = 0; i < count && status == DEM_OK; i++)
         set_line(n, &c, i, bodies, &contacts[i]);
+    const dem_vtp_array arrays[] = {{"normal_force", DEM_VTP_FLOAT64, 1, c.normal_force},
+                                    {"friction_force", DEM_VTP_FLOAT64, 1, c.friction_force},
+                                    {"force", DEM_VTP_FLOAT64, 3, c.force},
+                                    {"overlap", DEM_VTP_FLOAT64, 1, c.overlap},
+                                    {"kind", DEM_VTP_INT32, 1, c.kind},
+                                    {"body", DEM_VTP_INT32, 1, c.body},
+                                    {"other", DEM_VTP_INT32, 1, c.other},
+                                    {"wall", DEM_VTP_INT32, 1, c.wall}};
     if (status == DEM_OK)
-        status = write_lines(path, time, &c, count, error);
-    if (status == DEM_OK)
-        status = dem_pvd_add(&n->index, time, name, NULL, error);
+        status = write_lines(n, time, c.points, c.ends, count, arrays, sizeof arrays / sizeof *arrays, error);
     release_columns(&c);
-    free(path);
     return status;
 }
 
@@ -255,44 +227,25 @@ static void set_bond(const dem_network *n, bond_columns *c, size_t i, const dem_
     c->whole[3][i] = (int32_t)b->def;
 }
 
-static dem_status write_bond_lines(const char *path, double time, const bond_columns *c, size_t count, dem_error *error)
-{
-    const dem_vtp_array arrays[] = {{"force", DEM_VTP_FLOAT64, 3, c->force},
-                                    {"moment", DEM_VTP_FLOAT64, 3, c->moment},
-                                    {"tensile_stress", DEM_VTP_FLOAT64, 1, c->numbers[0]},
-                                    {"shear_stress", DEM_VTP_FLOAT64, 1, c->numbers[1]},
-                                    {"stress_ratio", DEM_VTP_FLOAT64, 1, c->numbers[2]},
-                                    {"broken", DEM_VTP_FLOAT64, 1, c->numbers[3]},
-                                    {"state", DEM_VTP_INT32, 1, c->whole[0]},
-                                    {"body", DEM_VTP_INT32, 1, c->whole[1]},
-                                    {"other", DEM_VTP_INT32, 1, c->whole[2]},
-                                    {"bond", DEM_VTP_INT32, 1, c->whole[3]}};
-    return dem_vtp_write(path,
-                         &(dem_vtp){.time = time,
-                                    .points = c->points,
-                                    .point_count = 2 * count,
-                                    .lines = c->ends,
-                                    .line_count = count,
-                                    .cell_arrays = arrays,
-                                    .cell_array_count = sizeof arrays / sizeof *arrays},
-                         error);
-}
-
 dem_status dem_network_write_bonds(dem_network *n, double time, const dem_body_view *bodies, const dem_bond_view *bonds,
                                    size_t count, dem_error *error)
 {
-    char name[FILE_BYTES];
     bond_columns c;
-    next_file(n, name);
-    char *path = dem_path_join(n->directory, "%s", name);
-    dem_status status = make_bond_columns(&c, count) && path ? DEM_OK : dem_fail_memory(error);
+    dem_status status = make_bond_columns(&c, count) ? DEM_OK : dem_fail_memory(error);
     for (size_t i = 0; i < count && status == DEM_OK; i++)
         set_bond(n, &c, i, bodies, &bonds[i]);
+    const dem_vtp_array arrays[] = {{"force", DEM_VTP_FLOAT64, 3, c.force},
+                                    {"moment", DEM_VTP_FLOAT64, 3, c.moment},
+                                    {"tensile_stress", DEM_VTP_FLOAT64, 1, c.numbers[0]},
+                                    {"shear_stress", DEM_VTP_FLOAT64, 1, c.numbers[1]},
+                                    {"stress_ratio", DEM_VTP_FLOAT64, 1, c.numbers[2]},
+                                    {"broken", DEM_VTP_FLOAT64, 1, c.numbers[3]},
+                                    {"state", DEM_VTP_INT32, 1, c.whole[0]},
+                                    {"body", DEM_VTP_INT32, 1, c.whole[1]},
+                                    {"other", DEM_VTP_INT32, 1, c.whole[2]},
+                                    {"bond", DEM_VTP_INT32, 1, c.whole[3]}};
     if (status == DEM_OK)
-        status = write_bond_lines(path, time, &c, count, error);
-    if (status == DEM_OK)
-        status = dem_pvd_add(&n->index, time, name, NULL, error);
+        status = write_lines(n, time, c.points, c.ends, count, arrays, sizeof arrays / sizeof *arrays, error);
     release_bond_columns(&c);
-    free(path);
     return status;
 }

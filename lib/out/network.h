@@ -9,16 +9,17 @@
 #ifndef DEM_OUT_NETWORK_H
 #define DEM_OUT_NETWORK_H
 
-#include "base/status.h"
+#include "base/file_queue.h"
 #include "dem/scene.h"
 #include "dem/world.h"
 
 typedef struct dem_network dem_network;
 
-/// `name`: "contacts" or "bonds". Makes the folder and removes what is behind the time to resume from (NAN: a new run, nothing of an earlier one
-/// stays). Errors: DEM_CANNOT_WRITE, DEM_NO_MEMORY; DEM_BAD_INPUT for an index to go on with that is none of ours.
-dem_status dem_network_open(const char *directory, const char *name, const dem_domain_def *domain, double resume,
-                            dem_network **network, dem_error *error);
+/// `name`: "contacts" or "bonds". Makes the folder and removes what is behind the time to resume from (NAN: a new run,
+/// nothing of an earlier one stays). The queue (borrowed; NULL: none) writes behind the caller's back.
+/// Errors: DEM_CANNOT_WRITE, DEM_NO_MEMORY; DEM_BAD_INPUT for an index to go on with that is none of ours.
+dem_status dem_network_open(const char *directory, const char *name, const dem_domain_def *domain,
+                            dem_file_queue *queue, double resume, dem_network **network, dem_error *error);
 
 /// Writes the contacts of one instant. Errors: DEM_CANNOT_WRITE, DEM_NO_MEMORY.
 dem_status dem_network_write(dem_network *network, double time, const dem_body_view *bodies,

@@ -1,5 +1,6 @@
 #include "out/pvd.h"
 
+#include <dirent.h>
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -84,6 +85,37 @@ dem_status dem_pvd_open(const char *folder, const char *name, double resume, dem
     if (status != DEM_OK)
         dem_pvd_release(index);
     return status;
+}
+
+// ---- files that are not named any more
+
+// the number of a file, six digits and more between prefix and suffix; below 0: it has none
+static long number_of(const char *name, const char *prefix)
+{
+    size_t length = strlen(prefix);
+    if (strncmp(name, prefix, length) != 0 || name[length] < '0' || name[length] > '9')
+        return -1;
+    long number;
+    const char *digits = name + length, *rest = dem_parse_long(digits, name + strlen(name), &number);
+    return rest && rest - digits >= 6 && strcmp(rest, ".vtp") == 0 ? number : -1;
+}
+
+dem_status dem_pvd_remove(const char *directory, const char *folder, const char *prefix, size_t first, dem_error *error)
+{
+    char *path = dem_path_join(directory, "%s", folder);
+    if (!path)
+        return dem_fail_memory(error);
+    DIR *listing = opendir(path);
+    const struct dirent *entry;
+    while (listing && (entry = readdir(listing))) {
+        long number = number_of(entry->d_name, prefix);
+        if (number >= 0 && (size_t)number >= first)
+            unlinkat(dirfd(listing), entry->d_name, 0);
+    }
+    if (listing)
+        closedir(listing);
+    free(path);
+    return DEM_OK;
 }
 
 // ---- writing

@@ -26,6 +26,11 @@ dem_status dem_pvd_open(const char *folder, const char *name, double resume, dem
 /// Adds an entry (files: NULL: none) and writes the index. Errors: DEM_CANNOT_WRITE, DEM_NO_MEMORY.
 dem_status dem_pvd_add(dem_pvd *index, double time, const char *file, const char *other, dem_error *error);
 
+/// Removes the files `prefix`NNNNNN.vtp of a folder in `directory` whose number is `first` or more: those that no entry
+/// names. Error: DEM_NO_MEMORY.
+dem_status dem_pvd_remove(const char *directory, const char *folder, const char *prefix, size_t first,
+                          dem_error *error);
+
 void dem_pvd_release(dem_pvd *index);
 
 #endif

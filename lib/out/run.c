@@ -28,7 +28,7 @@ typedef struct runner {
     dem_run_result *result;
     dem_world *w;
     dem_frames *frames;
-    dem_file_queue *queue;  // of the frames
+    dem_file_queue *queue;  // of frames and networks
     dem_series *series;
     dem_network *network, *bonds;
     const dem_clump **clumps;  // of the shapes, as the world runs them
@@ -78,16 +78,22 @@ static dem_status write_network(runner *r, dem_error *error)
     return dem_network_write(r->network, dem_world_time(r->w), &bodies, contacts, count, error);
 }
 
-// with every frame: lines as they are, and the table of what has broken
-static dem_status write_bonds(runner *r, dem_error *error)
+// the table of what has broken
+static dem_status write_breakages(runner *r, dem_error *error)
 {
     size_t count;
     DEM_TRY(measure(r, error));
+    const dem_bond_view *bonds = dem_world_bonds(r->w, &count);
+    return dem_breakages_write(r->queue, r->scene->output.directory, r->scene->bonds, bonds, count, error);
+}
+
+// with every frame: lines as they are
+static dem_status write_bonds(runner *r, dem_error *error)
+{
+    size_t count;
+    DEM_TRY(write_breakages(r, error));
     dem_body_view bodies = dem_world_bodies(r->w);
     const dem_bond_view *bonds = dem_world_bonds(r->w, &count);
-    DEM_TRY(dem_breakages_write(r->scene->output.directory, r->scene->bonds, bonds, count, error));
-    if (!r->bonds)
-        return DEM_OK;
     return dem_network_write_bonds(r->bonds, dem_world_time(r->w), &bodies, bonds, count, error);
 }
 
@@ -310,13 +316,14 @@ static dem_status take_up(runner *r, double *resume_time, dem_error *error)
 static dem_status open_outputs(runner *r, double resume, dem_error *error)
 {
     const dem_output_def *o = &r->scene->output;
+    if (o->frames > 0 || o->contacts > 0)
+        DEM_TRY(dem_file_queue_create(&r->queue, error));
     if (o->frames > 0) {
         r->clumps = dem_alloc(r->scene->shape_count, sizeof *r->clumps);
         if (!r->clumps)
             return dem_fail_memory(error);
         for (uint32_t i = 0; i < r->scene->shape_count; i++)
             r->clumps[i] = dem_world_clump(r->w, i);
-        DEM_TRY(dem_file_queue_create(&r->queue, error));
         dem_frames_def def = {o->directory,    r->scene->shapes,     r->clumps,        r->scene->shape_count,
                               r->scene->walls, r->scene->wall_count, r->scene->domain, r->queue,
                               resume};
@@ -332,9 +339,9 @@ static dem_status open_outputs(runner *r, double resume, dem_error *error)
                                                   .bonds = r->scene->bond_count > 0},
                                 resume, &r->series, error));
     if (o->contacts > 0)
-        DEM_TRY(dem_network_open(o->directory, "contacts", &r->scene->domain, resume, &r->network, error));
+        DEM_TRY(dem_network_open(o->directory, "contacts", &r->scene->domain, r->queue, resume, &r->network, error));
     if (o->frames > 0 && r->scene->bond_count)
-        DEM_TRY(dem_network_open(o->directory, "bonds", &r->scene->domain, resume, &r->bonds, error));
+        DEM_TRY(dem_network_open(o->directory, "bonds", &r->scene->domain, r->queue, resume, &r->bonds, error));
     double t = isnan(resume) ? -1 : resume + EVENT_TOLERANCE * dem_world_step_size(r->w);
     r->next_frame = o->frames > 0 && t >= 0 ? next_multiple(t, o->frames) : 0;
     r->next_series = o->series > 0 && t >= 0 ? next_multiple(t, o->series) : 0;
@@ -351,11 +358,8 @@ static dem_status finish(runner *r, dem_error *error)
     dem_body_view bodies = dem_world_bodies(r->w);
     DEM_TRY(
         dem_final_write(r->ctx, r->scene->output.directory, r->scene->shapes, r->scene->shape_count, &bodies, error));
-    if (r->scene->bond_count) {
-        size_t count;
-        const dem_bond_view *bonds = dem_world_bonds(r->w, &count);
-        DEM_TRY(dem_breakages_write(r->scene->output.directory, r->scene->bonds, bonds, count, error));
-    }
+    if (r->scene->bond_count)
+        DEM_TRY(write_breakages(r, error));
     DEM_TRY(dem_file_queue_wait(r->queue, error));
     r->output_seconds += dem_clock() - begin;
     return DEM_OK;
