@@ -4,6 +4,26 @@
 
 #include "worlds.h"
 
+/// Runs 2 `steps` of the model with 1, 2 and 8 threads, and with 2 and a restart with 1.
+static inline void check_same_threads(const model *m, uint64_t steps)
+{
+    static const int threads[] = {1, 2, 8, 2};
+    uint64_t want = 0;
+    for (int k = 0; k < 4; k++) {
+        dem_world *w = model_world(m, threads[k]);
+        run_steps(w, steps);
+        if (k == 3) {
+            dem_world *resumed = model_resumed(m, w, 1);
+            dem_world_destroy(w);
+            w = resumed;
+        }
+        run_steps(w, steps);
+        want = k ? want : dem_world_hash(w);
+        check(dem_world_hash(w) == want);
+        dem_world_destroy(w);
+    }
+}
+
 /// Runs 2 `steps` of five worlds of one model; `look` (may be NULL) judges each at the end.
 static inline void check_same_bits(model *(*make)(void), uint64_t steps, void (*look)(dem_world *w))
 {
@@ -18,14 +38,9 @@ static inline void check_same_bits(model *(*make)(void), uint64_t steps, void (*
         }
         run_steps(w, steps);
         if (i == 4) {
-            void *bytes;
-            size_t size;
-            dem_error error;
-            check_ok(dem_world_save(w, &bytes, &size, &error), error);
+            dem_world *resumed = model_resumed(m, w, 1);
             dem_world_destroy(w);
-            w = model_world(m, 1);
-            check_ok(dem_world_restore(w, bytes, size, &error), error);
-            free(bytes);
+            w = resumed;
         }
         run_steps(w, steps);
         measured(w);

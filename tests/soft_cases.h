@@ -122,4 +122,43 @@ static inline double soft_twin_place(dem_world *w, dem_quat q0, dem_quat q1, dou
     return low;
 }
 
+/// What a path takes: work around it and the largest stored energy on it [J]; the largest change of the force in a step
+/// of it and the largest force [N].
+typedef struct path_figures {
+    double work, stored, jump, force;
+} path_figures;
+
+/// Leads body 1, turned by q1, around a closed path of places and attitudes beside its twin that keeps in touch; the
+/// work by trapezoids.
+static inline path_figures soft_closed_path(dem_world *w, dem_quat q0, dem_quat q1, double overlap, int steps)
+{
+    dem_quat last_q = q1;
+    dem_vec3 normal, last_x = v3(0, 0, 0), last_f = last_x, last_t = last_x;
+    double x = soft_twin_place(w, q0, q1, overlap, &normal);
+    dem_vec3 across = v3_normal_to(normal);
+    path_figures p = {0, 0, 0, 0};
+    for (int i = 0; i <= steps; i++) {
+        double a = 2 * DEM_PI * i / steps;
+        dem_vec3 at = v3_along(v3(x, 0, 0), 0.4 * overlap * (1 - cos(a)), normal);
+        at = v3_along(at, 2 * overlap * sin(a), across);
+        dem_quat turn = quat_multiply(quat_about(v3(0.02 * sin(a), 0.015 * (1 - cos(a)), -0.02 * sin(2 * a))), q1);
+        soft_place(w, 1, at, turn);
+        soft_placed(w);
+        dem_vec3 f = dem_world_bodies(w).force[1], t = dem_world_bodies(w).moment[1];
+        if (i > 0) {
+            dem_quat d = quat_multiply(turn, quat_conjugate(last_q));
+            dem_vec3 by = v3_scale(v3(d.x, d.y, d.z), d.w < 0 ? -2 : 2);
+            p.work += 0.5 * (v3_dot(v3_add(f, last_f), v3_sub(at, last_x)) + v3_dot(v3_add(t, last_t), by));
+            p.jump = largest(p.jump, v3_distance(f, last_f));
+        }
+        p.stored = largest(p.stored, measured(w)->energy.elastic);
+        p.force = largest(p.force, v3_norm(f));
+        last_x = at;
+        last_q = turn;
+        last_f = f;
+        last_t = t;
+    }
+    return p;
+}
+
 #endif

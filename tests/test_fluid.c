@@ -1,7 +1,7 @@
 // The drag of a fluid: terminal velocities at any Reynolds number, grains that are stiff against the step, buoyancy,
 // and the ledger.
 #include "sim/fluid.h"
-#include "worlds.h"
+#include "same_bits.h"
 
 static const double G = 9.81, STONE = 2500;
 
@@ -188,25 +188,7 @@ static void fluids_survive_a_save_and_change_no_bit_with_threads(void **state)
     static const dem_integrator_def schemes[] = {{0}, {DEM_TRANSLATION_TAYLOR, DEM_ROTATION_PCDM}};
     for (int s = 0; s < 2; s++) {
         model *m = sediment(v3(0.3, 0, 0), schemes[s], 600, 1e-5);
-        uint64_t first = 0;
-        for (int k = 0; k < 4; k++) {
-            dem_world *w = model_world(m, k < 3 ? 1 << (k + k / 2) : 2);
-            run_steps(w, 200);
-            if (k == 3) {
-                void *bytes;
-                size_t size;
-                dem_error error;
-                check_ok(dem_world_save(w, &bytes, &size, &error), error);
-                dem_world_destroy(w);
-                w = model_world(m, 1);
-                check_ok(dem_world_restore(w, bytes, size, &error), error);
-                free(bytes);
-            }
-            run_steps(w, 200);
-            first = k ? first : dem_world_hash(w);
-            check(dem_world_hash(w) == first);
-            dem_world_destroy(w);
-        }
+        check_same_threads(m, 200);
         model_free(m);
     }
 }

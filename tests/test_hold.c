@@ -1,9 +1,9 @@
 // Bodies that are held: fixed ones are walls to the others, given motions do work, locked axes are constraints, and two
 // dimensions are three of which one is locked.
+#include "same_bits.h"
+
 #include "sim/impact.h"
 #include "sim/timestep.h"
-#include "worlds.h"
-
 #include "sim/validate.h"
 
 static const uint32_t FIXED = DEM_HOLD_VELOCITY | DEM_HOLD_SPIN;
@@ -494,25 +494,7 @@ static void held_bodies_go_on_from_a_saved_state_and_with_any_threads(void **sta
 {
     (void)state;
     model *m = crowd(600, true);
-    uint64_t first = 0;
-    for (int k = 0; k < 4; k++) {
-        dem_world *w = model_world(m, k < 3 ? 1 << (k + k / 2) : 2);
-        run_steps(w, 300);
-        if (k == 3) {
-            void *bytes;
-            size_t size;
-            dem_error error;
-            check_ok(dem_world_save(w, &bytes, &size, &error), error);
-            dem_world_destroy(w);
-            w = model_world(m, 1);
-            check_ok(dem_world_restore(w, bytes, size, &error), error);
-            free(bytes);
-        }
-        run_steps(w, 300);
-        first = k ? first : dem_world_hash(w);
-        check(dem_world_hash(w) == first);
-        dem_world_destroy(w);
-    }
+    check_same_threads(m, 300);
     model_free(m);
 }
 

@@ -417,12 +417,6 @@ static void any_number_of_threads_gives_the_same_bits(void **state)
     feed_free(f);
 }
 
-static void saved(dem_world *w, void **bytes, size_t *size)
-{
-    dem_error error;
-    check_ok(dem_world_save(w, bytes, size, &error), error);
-}
-
 // bodies that wait for room look for it elsewhere every time
 static void what_waits_goes_on_bit_for_bit(void **state)
 {
@@ -432,21 +426,16 @@ static void what_waits_goes_on_bit_for_bit(void **state)
     f->inlets[0].high = v3(0.1, 0.1, 0.5);
     f->inlets[0].rate = 2000;
     f->inlets[0].velocity = v3(0, 0, 0);
-    dem_world *w = model_world(f->m, 1), *again = model_world(f->m, 1);
-    void *bytes;
-    size_t size;
-    dem_error error;
+    dem_world *w = model_world(f->m, 1);
     while (w->population->inlets[0].looks < 3)
         run_steps(w, 5);
-    saved(w, &bytes, &size);
-    check_ok(dem_world_restore(again, bytes, size, &error), error);
+    dem_world *again = model_resumed(f->m, w, 1);
     uint64_t before = w->population->came;
     while (w->population->came < before + 2) {
         run_steps(w, 10);
         run_steps(again, 10);
     }
     check(dem_world_hash(w) == dem_world_hash(again));
-    free(bytes);
     dem_world_destroy(w);
     dem_world_destroy(again);
     feed_free(f);
@@ -463,17 +452,14 @@ static void a_restored_world_goes_on_bit_for_bit(void **state)
     f->m->scene.inlet_count = 2;
     // rows for few at first, as far as the scene tells
     f->m->scene.time.end = 0.05;
-    dem_world *w = model_world(f->m, 1), *again = model_world(f->m, 2);
-    size_t rows = w->bodies.count, size;
-    void *bytes;
+    dem_world *w = model_world(f->m, 1);
+    size_t rows = w->bodies.count;
     while (w->bodies.count == rows || w->population->inlets[1].inside == (uint32_t)DEM_ROW_FREE)
         run_steps(w, 7);
     run_steps(w, 600);
     while (w->population->inlets[1].inside == (uint32_t)DEM_ROW_FREE)
         run_steps(w, 1);
-    saved(w, &bytes, &size);
-    dem_error error;
-    check_ok(dem_world_restore(again, bytes, size, &error), error);
+    dem_world *again = model_resumed(f->m, w, 2);
     check(dem_world_hash(w) == dem_world_hash(again));
     for (int i = 0; i < 5; i++) {
         run_steps(w, 500);
@@ -486,7 +472,6 @@ static void a_restored_world_goes_on_bit_for_bit(void **state)
     check(a->came > 100 && a->left > 10 && a->energy.brought == b->energy.brought);
     assert_memory_equal(dem_world_bodies(w).id, dem_world_bodies(again).id, a->bodies * sizeof(uint32_t));
     lists_are_true(again);
-    free(bytes);
     dem_world_destroy(w);
     dem_world_destroy(again);
     feed_free(f);

@@ -1,6 +1,6 @@
 // The rotation of bodies against exact solutions: free tops, the heavy top, fast spins, and any choice of body axes.
 // PHYSICS 2.3 and 6.3; the figures of the default scheme there are the bounds here.
-#include "worlds.h"
+#include "rotor.h"
 
 // a body alone in space, one ball with the moments given; spin along the principal axes
 static dem_world *lone_body(const double inertia[3], double radius, double mass, dem_quat q, dem_vec3 spin, double step)
@@ -58,40 +58,12 @@ static void tops_stay_near_the_tables_for_a_hundred_seconds(void **state)
 
 // ---- needles and plates
 
-// Euler's equations and the turning of the body by Runge and Kutta's fourth order
-typedef struct rotor_state {
-    double y[7];  // q, spin in the body
-} rotor_state;
-
-static rotor_state rotor_rate(const double i[3], const rotor_state *s)
-{
-    const double *y = s->y;
-    dem_quat q = {y[0], y[1], y[2], y[3]}, d = quat_multiply(q, (dem_quat){0, y[4], y[5], y[6]});
-    return (rotor_state){{d.w / 2, d.x / 2, d.y / 2, d.z / 2, (i[1] - i[2]) * y[5] * y[6] / i[0],
-                          (i[2] - i[0]) * y[6] * y[4] / i[1], (i[0] - i[1]) * y[4] * y[5] / i[2]}};
-}
-static rotor_state rotor_add(rotor_state a, double h, rotor_state b)
-{
-    for (int k = 0; k < 7; k++)
-        a.y[k] += h * b.y[k];
-    return a;
-}
-static rotor_state rotor_step(const double i[3], rotor_state s, double h)
-{
-    rotor_state a = rotor_rate(i, &s), t = rotor_add(s, h / 2, a), b = rotor_rate(i, &t);
-    t = rotor_add(s, h / 2, b);
-    rotor_state c = rotor_rate(i, &t);
-    t = rotor_add(s, h, c);
-    rotor_state d = rotor_rate(i, &t);
-    return rotor_add(rotor_add(rotor_add(rotor_add(s, h / 6, a), h / 3, b), h / 3, c), h / 6, d);
-}
-
-// the largest angle to that solution within 20 s
+// the largest angle to the solution of rotor.h within 20 s
 static double off_exact(const double inertia[3], dem_vec3 spin, uint64_t steps)
 {
     // PHYSICS' needle has moments that no body can have, so they are put in later
     bool body = inertia[2] <= inertia[0] + inertia[1];
-    double h = 20.0 / (double)steps, most = 0;
+    double h = 20.0 / (double)steps;
     dem_world *w =
         lone_body(body ? inertia : (double[]){inertia[0], inertia[1], inertia[1]}, 1, 1, NOT_TURNED, spin, h);
     if (!body) {
@@ -99,14 +71,7 @@ static double off_exact(const double inertia[3], dem_vec3 spin, uint64_t steps)
         w->bodies.inertia[2] = 1 / inertia[2];
         w->bodies.momentum[5] = inertia[2] * spin.z;
     }
-    rotor_state s = {{1, 0, 0, 0, spin.x, spin.y, spin.z}};
-    int parts = 20;
-    for (uint64_t k = 0; k < steps; k++) {
-        run_steps(w, 1);
-        for (int i = 0; i < parts; i++)
-            s = rotor_step(inertia, s, h / parts);
-        most = fmax(most, angle_between(orientation_now(w, 0), quat_unit((dem_quat){s.y[0], s.y[1], s.y[2], s.y[3]})));
-    }
+    double most = rotor_error(w, inertia, spin, h, steps);
     dem_world_destroy(w);
     return most;
 }

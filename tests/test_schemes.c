@@ -1,6 +1,6 @@
 // The schemes of integration beside the default: how they grow, what they keep, their errors and orders (PHYSICS 2.1 to
 // 2.3).
-#include "worlds.h"
+#include "rotor.h"
 
 #include "sim/schemes.h"
 
@@ -22,48 +22,12 @@ static dem_world *lone_body(dem_rotation scheme, const double inertia[3], dem_qu
     return w;
 }
 
-// Euler's equations and the turning of the body by Runge and Kutta's fourth order
-typedef struct rotor_state {
-    double y[7];  // q, spin in the body
-} rotor_state;
-
-static rotor_state rotor_rate(const double i[3], const rotor_state *s)
-{
-    const double *y = s->y;
-    dem_quat q = {y[0], y[1], y[2], y[3]}, d = quat_multiply(q, (dem_quat){0, y[4], y[5], y[6]});
-    return (rotor_state){{d.w / 2, d.x / 2, d.y / 2, d.z / 2, (i[1] - i[2]) * y[5] * y[6] / i[0],
-                          (i[2] - i[0]) * y[6] * y[4] / i[1], (i[0] - i[1]) * y[4] * y[5] / i[2]}};
-}
-static rotor_state rotor_add(rotor_state a, double h, rotor_state b)
-{
-    for (int k = 0; k < 7; k++)
-        a.y[k] += h * b.y[k];
-    return a;
-}
-static rotor_state rotor_step(const double i[3], rotor_state s, double h)
-{
-    rotor_state a = rotor_rate(i, &s), t = rotor_add(s, h / 2, a), b = rotor_rate(i, &t);
-    t = rotor_add(s, h / 2, b);
-    rotor_state c = rotor_rate(i, &t);
-    t = rotor_add(s, h, c);
-    rotor_state d = rotor_rate(i, &t);
-    return rotor_add(rotor_add(rotor_add(rotor_add(s, h / 6, a), h / 3, b), h / 3, c), h / 6, d);
-}
-
-// the largest angle between a free body and that solution
+// the largest angle between a free body and the solution of rotor.h
 static double free_error(dem_rotation scheme, const double inertia[3], dem_vec3 spin, double time, int steps)
 {
-    double h = time / steps, most = 0;
+    double h = time / steps;
     dem_world *w = lone_body(scheme, inertia, NOT_TURNED, spin, h);
-    rotor_state s = {{1, 0, 0, 0, spin.x, spin.y, spin.z}};
-    int parts = 20;
-    for (int k = 0; k < steps; k++) {
-        run_steps(w, 1);
-        for (int i = 0; i < parts; i++)
-            s = rotor_step(inertia, s, h / parts);
-        dem_quat exact = quat_unit((dem_quat){s.y[0], s.y[1], s.y[2], s.y[3]});
-        most = largest(most, angle_between(orientation_now(w, 0), exact));
-    }
+    double most = rotor_error(w, inertia, spin, h, (uint64_t)steps);
     dem_world_destroy(w);
     return most;
 }

@@ -3,26 +3,6 @@
 
 static const double K = 1e5, OVERLAP = 0.005;  // grains are of about 1 m
 
-// an ellipsoid of diameters 1.26, 1, .79 m covered by n spheres that touch its surface from inside
-static uint32_t ellipsoid(model *m, size_t n)
-{
-    static const dem_vec3 AXES = {0.63, 0.5, 0.397};
-    dem_ball *balls = calloc(n, sizeof *balls);
-    check(balls);
-    for (size_t i = 0; i < n; i++) {
-        double z = 1 - (2 * (double)i + 1) / (double)n, s = sqrt(1 - z * z), a = 2.39996322972865332 * (double)i;
-        dem_vec3 u = v3(s * cos(a), s * sin(a), z), p = v3(AXES.x * u.x, AXES.y * u.y, AXES.z * u.z);
-        dem_vec3 out = v3_unit(v3(u.x / AXES.x, u.y / AXES.y, u.z / AXES.z));
-        balls[i] = (dem_ball){v3_along(p, -0.24, out), 0.24};
-    }
-    double mass = 2500 * 4 * DEM_PI / 3 * AXES.x * AXES.y * AXES.z, xx = AXES.x * AXES.x, yy = AXES.y * AXES.y,
-           zz = AXES.z * AXES.z;
-    uint32_t shape =
-        model_clump(m, balls, n, mass, (double[]){mass * (yy + zz) / 5, mass * (xx + zz) / 5, mass * (xx + yy) / 5});
-    free(balls);
-    return shape;
-}
-
 static model *soft_model(void)
 {
     model *m = model_new();
@@ -104,7 +84,7 @@ static stiffness stiffness_of(dem_multiple multiple, size_t spheres, bool twin)
 {
     model *m = soft_model();
     m->scene.multiple = multiple;
-    uint32_t shape = ellipsoid(m, spheres);
+    uint32_t shape = model_ellipsoid(m, spheres);
     for (int i = 0; i < 1 + twin; i++)
         model_body(m, shape, v3(10 * i, 0, 10));
     if (!twin)
@@ -202,7 +182,7 @@ static double restitution_of(dem_multiple multiple, size_t n, bool twin, int imp
     model *m = soft_model();
     m->scene.multiple = multiple;
     damp(&m->laws[0], 0.8, 0);
-    uint32_t shape = ellipsoid(m, n);
+    uint32_t shape = model_ellipsoid(m, n);
     for (int i = 0; i < 1 + twin; i++)
         model_body(m, shape, v3(10 * i, 0, 10));
     if (!twin)
@@ -237,7 +217,7 @@ static void hertz_has_the_radius_of_the_grain(void **state)
         model *m = soft_model();
         m->laws[0].normal = DEM_NORMAL_HERTZ;
         m->materials[0].young = 1e8;
-        model_body(m, ellipsoid(m, i == 0 ? 10 : 200), v3(0, 0, 0))->orientation = (dem_quat){0.9, 0.3, -0.2, 0.1};
+        model_body(m, model_ellipsoid(m, i == 0 ? 10 : 200), v3(0, 0, 0))->orientation = (dem_quat){0.9, 0.3, -0.2, 0.1};
         model_plane(m, v3(0, 0, 0), v3(0, 0, 1));
         dem_world *w = model_world(m, 1);
         soft_place(w, 0, v3(0, 0, soft_support(w, 0, v3(0, 0, -1)) - OVERLAP), m->bodies[0].orientation);
@@ -256,48 +236,18 @@ static void hertz_has_the_radius_of_the_grain(void **state)
 
 // ---- paths
 
-typedef struct path_figures {
-    double work, stored;  // around a closed path; largest on it [J]
-    double jump, force;   // largest change of the force in a step of `step`; largest force [N]
-} path_figures;
-
-// a twin is led around a loop of places and attitudes that keeps in touch
 static path_figures closed_path(dem_multiple multiple, size_t n, uint64_t seed)
 {
     enum { STEPS = 1200 };
     model *m = soft_model();
     m->scene.multiple = multiple;
-    uint32_t shape = ellipsoid(m, n);
+    uint32_t shape = model_ellipsoid(m, n);
     model_body(m, shape, v3(0, 0, 0));
     model_body(m, shape, v3(10, 0, 0));
     dem_world *w = model_world(m, 1);
     dem_random r = random_stream(seed, 3);
-    dem_quat q[2] = {random_quat(&r), random_quat(&r)}, last_q = q[1];
-    dem_vec3 normal, last_x = v3(0, 0, 0), last_f = v3(0, 0, 0), last_t = last_f;
-    double x = soft_twin_place(w, q[0], q[1], OVERLAP, &normal);
-    dem_vec3 across = v3_normal_to(normal);
-    path_figures p = {0, 0, 0, 0};
-    for (int i = 0; i <= STEPS; i++) {
-        double a = 2 * DEM_PI * i / STEPS;
-        dem_vec3 at = v3_along(v3(x, 0, 0), 0.4 * OVERLAP * (1 - cos(a)), normal);
-        at = v3_along(at, 2 * OVERLAP * sin(a), across);
-        dem_quat turn = quat_multiply(quat_about(v3(0.02 * sin(a), 0.015 * (1 - cos(a)), -0.02 * sin(2 * a))), q[1]);
-        soft_place(w, 1, at, turn);
-        soft_placed(w);
-        dem_vec3 f = dem_world_bodies(w).force[1], t = dem_world_bodies(w).moment[1];
-        if (i > 0) {
-            dem_quat d = quat_multiply(turn, quat_conjugate(last_q));
-            dem_vec3 by = v3_scale(v3(d.x, d.y, d.z), d.w < 0 ? -2 : 2);
-            p.work += 0.5 * (v3_dot(v3_add(f, last_f), v3_sub(at, last_x)) + v3_dot(v3_add(t, last_t), by));
-            p.jump = fmax(p.jump, v3_distance(f, last_f));
-        }
-        p.stored = fmax(p.stored, measured(w)->energy.elastic);
-        p.force = fmax(p.force, v3_norm(f));
-        last_x = at;
-        last_q = turn;
-        last_f = f;
-        last_t = t;
-    }
+    dem_quat q[2] = {random_quat(&r), random_quat(&r)};
+    path_figures p = soft_closed_path(w, q[0], q[1], OVERLAP, STEPS);
     dem_world_destroy(w);
     model_free(m);
     return p;
@@ -324,7 +274,7 @@ static void run_with_copies(size_t copies, dem_vec3 out[4])
 {
     model *m = soft_model();
     damp(&m->laws[0], 0.6, 0.4);
-    uint32_t shape = ellipsoid(m, 60);
+    uint32_t shape = model_ellipsoid(m, 60);
     dem_clump_def def = dem_clump_view(m->clumps[shape]);
     dem_ball balls[120];
     memcpy(balls, def.balls, 60 * sizeof *balls);

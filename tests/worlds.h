@@ -30,6 +30,19 @@ static inline dem_world *model_world(const model *m, int threads)
     return w;
 }
 
+/// A new world of the model that goes on from the saved state of `w`.
+static inline dem_world *model_resumed(const model *m, const dem_world *w, int threads)
+{
+    dem_world *resumed = model_world(m, threads);
+    void *bytes;
+    size_t size;
+    dem_error error;
+    check_ok(dem_world_save(w, &bytes, &size, &error), error);
+    check_ok(dem_world_restore(resumed, bytes, size, &error), error);
+    free(bytes);
+    return resumed;
+}
+
 static inline void run_steps(dem_world *w, uint64_t steps)
 {
     dem_error error;

@@ -122,6 +122,25 @@ static inline uint32_t model_cloud(model *m, size_t count, double size, uint64_t
     return shape;
 }
 
+/// An ellipsoid of diameters 1.26, 1, .79 m, with its own mass and moments, lined by `count` balls that touch its
+/// surface from inside.
+static inline uint32_t model_ellipsoid(model *m, size_t count)
+{
+    static const dem_vec3 axes = {0.63, 0.5, 0.397};
+    dem_ball balls[MODEL_CLOUD];
+    DEM_ASSERT(count <= MODEL_CLOUD);
+    for (size_t i = 0; i < count; i++) {
+        double z = 1 - (2 * (double)i + 1) / (double)count, s = sqrt(1 - z * z), a = 2.39996322972865332 * (double)i;
+        dem_vec3 u = v3(s * cos(a), s * sin(a), z), p = v3(axes.x * u.x, axes.y * u.y, axes.z * u.z);
+        dem_vec3 out = v3_unit(v3(u.x / axes.x, u.y / axes.y, u.z / axes.z));
+        balls[i] = (dem_ball){v3_along(p, -0.24, out), 0.24};
+    }
+    double mass = 2500 * 4 * DEM_PI / 3 * axes.x * axes.y * axes.z, xx = axes.x * axes.x, yy = axes.y * axes.y,
+           zz = axes.z * axes.z;
+    return model_clump(m, balls, count, mass,
+                       (double[]){mass * (yy + zz) / 5, mass * (xx + zz) / 5, mass * (xx + yy) / 5});
+}
+
 static inline dem_body_def *model_body(model *m, uint32_t shape, dem_vec3 position)
 {
     size_t i = m->scene.bodies.count++;

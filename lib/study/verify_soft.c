@@ -5,22 +5,6 @@
 static const double STIFFNESS = 1e5, TAU = 0.0012;  // grains are of about 1 m, overlaps of 5 mm
 static const size_t COUNTS[] = {10, 50, 200, 1000};
 
-// an ellipsoid of diameters 1.26, 1, .79 m covered by n spheres that touch its surface from inside
-static uint32_t ellipsoid(model *m, size_t n)
-{
-    static const dem_vec3 axes = {0.63, 0.5, 0.397};
-    dem_ball balls[MODEL_CLOUD];
-    for (size_t i = 0; i < n; i++) {
-        double z = 1 - (2 * (double)i + 1) / (double)n, s = sqrt(1 - z * z), a = 2.39996322972865332 * (double)i;
-        dem_vec3 u = v3(s * cos(a), s * sin(a), z), p = v3(axes.x * u.x, axes.y * u.y, axes.z * u.z);
-        dem_vec3 out = v3_unit(v3(u.x / axes.x, u.y / axes.y, u.z / axes.z));
-        balls[i] = (dem_ball){v3_along(p, -0.24, out), 0.24};
-    }
-    double mass = 2500 * 4 * DEM_PI / 3 * axes.x * axes.y * axes.z, xx = axes.x * axes.x, yy = axes.y * axes.y,
-           zz = axes.z * axes.z;
-    return model_clump(m, balls, n, mass, (double[]){mass * (yy + zz) / 5, mass * (xx + zz) / 5, mass * (xx + yy) / 5});
-}
-
 typedef struct bounce {
     double restitution;  // of the point of contact, along the normal
     double stiffness;    // by the largest force, v sqrt(m_loc k) where nothing is lost, over that of the law
@@ -43,7 +27,7 @@ static bounce drop(dem_trial *t, size_t n, double restitution, dem_quat turn, do
     m->laws[0].stiffness = STIFFNESS;
     m->laws[0].damping = DEM_DAMPING_RESTITUTION;
     m->laws[0].restitution = restitution;
-    uint32_t shape = ellipsoid(m, n);
+    uint32_t shape = model_ellipsoid(m, n);
     model_plane(m, v3(0, 0, 0), v3(0, 0, 1));
     double lowest = 0;
     dem_clump_def def = {0};

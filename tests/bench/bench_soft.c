@@ -33,12 +33,32 @@ static model *new_model(const bench *b, size_t bodies, bool wall)
     return m;
 }
 
+// stiffness of a contact at OVERLAP over the law's, by orientation
+typedef struct stiffnesses {
+    double tangent, secant, square;  // means: of dF/dd, of F/d, of its square [-]
+} stiffnesses;
+
+// forces at overlaps 1 % below and above
+static void add_forces(stiffnesses *s, const double force[2])
+{
+    double secant = (force[0] + force[1]) / (2 * OVERLAP * STIFFNESS);
+    s->tangent += (force[1] - force[0]) / (0.02 * OVERLAP * STIFFNESS) / ORIENTATIONS;
+    s->secant += secant / ORIENTATIONS;
+    s->square += secant * secant / ORIENTATIONS;
+}
+
+static void print_stiffnesses(const bench *b, const stiffnesses *s)
+{
+    printf("%6zu  K %7.3f  F/kd %7.3f +- %5.3f\n", b->spheres, s->tangent, s->secant,
+           sqrt(fmax(0, s->square - s->secant * s->secant)));
+}
+
 static void wall(const bench *b)
 {
     model *m = new_model(b, 1, true);
     dem_world *w = model_world(m, 1);
     dem_random r = random_stream(1, 1);
-    double tangent = 0, secant = 0, square = 0;
+    stiffnesses sum = {0};
     for (int i = 0; i < ORIENTATIONS; i++) {
         dem_quat q = random_quat(&r);
         double force[2];
@@ -49,14 +69,9 @@ static void wall(const bench *b)
             soft_placed(w);
             force[k] = dem_world_bodies(w).force[0].z;
         }
-        double t = (force[1] - force[0]) / (0.02 * OVERLAP * STIFFNESS),
-               s = (force[0] + force[1]) / (2 * OVERLAP * STIFFNESS);
-        tangent += t / ORIENTATIONS;
-        secant += s / ORIENTATIONS;
-        square += s * s / ORIENTATIONS;
+        add_forces(&sum, force);
     }
-    printf("%6zu  K %7.3f  F/kd %7.3f +- %5.3f\n", b->spheres, tangent, secant,
-           sqrt(fmax(0, square - secant * secant)));
+    print_stiffnesses(b, &sum);
     dem_world_destroy(w);
     model_free(m);
 }
@@ -66,7 +81,7 @@ static void twin(const bench *b)
     model *m = new_model(b, 2, false);
     dem_world *w = model_world(m, 1);
     dem_random r = random_stream(1, 2);
-    double tangent = 0, secant = 0, square = 0;
+    stiffnesses sum = {0};
     for (int i = 0; i < ORIENTATIONS; i++) {
         dem_quat q[2] = {random_quat(&r), random_quat(&r)};
         dem_vec3 n;
@@ -76,14 +91,9 @@ static void twin(const bench *b)
             soft_placed(w);
             force[k] = v3_dot(dem_world_bodies(w).force[1], n);
         }
-        double t = (force[1] - force[0]) / (0.02 * OVERLAP * STIFFNESS),
-               s = (force[0] + force[1]) / (2 * OVERLAP * STIFFNESS);
-        tangent += t / ORIENTATIONS;
-        secant += s / ORIENTATIONS;
-        square += s * s / ORIENTATIONS;
+        add_forces(&sum, force);
     }
-    printf("%6zu  K %7.3f  F/kd %7.3f +- %5.3f\n", b->spheres, tangent, secant,
-           sqrt(fmax(0, square - secant * secant)));
+    print_stiffnesses(b, &sum);
     dem_world_destroy(w);
     model_free(m);
 }
@@ -256,34 +266,10 @@ static void paths(const bench *b)
     dem_random r = random_stream(1, 5);
     double work = 0, jump = 0;
     for (int path = 0; path < PATHS; path++) {
-        dem_quat q[2] = {random_quat(&r), random_quat(&r)}, last_q = q[1];
-        dem_vec3 normal, zero = v3(0, 0, 0), last_x = zero, last_f = zero, last_t = zero;
-        double x = soft_twin_place(w, q[0], q[1], OVERLAP, &normal), sum = 0, stored = 0, force = 0, most = 0;
-        dem_vec3 across = v3_normal_to(normal);
-        for (int i = 0; i <= STEPS; i++) {
-            double a = 2 * DEM_PI * i / STEPS;
-            dem_vec3 at = v3_along(v3(x, 0, 0), 0.4 * OVERLAP * (1 - cos(a)), normal);
-            at = v3_along(at, 2 * OVERLAP * sin(a), across);
-            dem_quat turn =
-                quat_multiply(quat_about(v3(0.02 * sin(a), 0.015 * (1 - cos(a)), -0.02 * sin(2 * a))), q[1]);
-            soft_place(w, 1, at, turn);
-            soft_placed(w);
-            dem_vec3 f = dem_world_bodies(w).force[1], t = dem_world_bodies(w).moment[1];
-            if (i > 0) {
-                dem_quat d = quat_multiply(turn, quat_conjugate(last_q));
-                dem_vec3 by = v3_scale(v3(d.x, d.y, d.z), d.w < 0 ? -2 : 2);
-                sum += 0.5 * (v3_dot(v3_add(f, last_f), v3_sub(at, last_x)) + v3_dot(v3_add(t, last_t), by));
-                most = fmax(most, v3_distance(f, last_f));
-            }
-            stored = fmax(stored, dem_world_figures(w)->energy.elastic);
-            force = fmax(force, v3_norm(f));
-            last_x = at;
-            last_q = turn;
-            last_f = f;
-            last_t = t;
-        }
-        work = fmax(work, fabs(sum) / stored);
-        jump = fmax(jump, most / force);
+        dem_quat q[2] = {random_quat(&r), random_quat(&r)};
+        path_figures p = soft_closed_path(w, q[0], q[1], OVERLAP, STEPS);
+        work = fmax(work, fabs(p.work) / p.stored);
+        jump = fmax(jump, p.jump / p.force);
     }
     printf("%6zu  work / stored %8.1e  largest jump / largest force %7.4f\n", b->spheres, work, jump);
     dem_world_destroy(w);
