@@ -27,7 +27,7 @@ static dem_figures figures_at(int i)
                          .overlap_ratio = 1e-3 * random_uniform(&r),
                          .centre = random_vector(&r),
                          .highest = 1.0 / 3,
-                         .energy = {random_uniform(&r), 1, -2, 3, 4, 5, 6, 7, 8, 9, 10, NAN}};
+                         .energy = {random_uniform(&r), 1, -2, 3, 4, 5, 6, 7, 8, 9, 10, NAN, 0}};
 }
 
 static dem_status write_row(dem_series *series, int i, dem_error *error)
@@ -73,7 +73,7 @@ static void a_row_is_in_the_file_at_once_and_in_no_locale(void **state)
                      .overlap_ratio = 0.1 + 0.2,
                      .centre = {1, -2, 1e-20},
                      .highest = INFINITY,
-                     .energy = {0.5, 0.25, -1, 2, 3, 4, 4.5, 5, 6, 7, 8, -NAN}};
+                     .energy = {0.5, 0.25, -1, 2, 3, 4, 4.5, 5, 6, 7, 8, -NAN, 0}};
     const dem_wall_view wall = {.force = {1, 2, 3}, .moment = {-0.25, 0, 6}};
     dem_error error;
     check_ok(dem_series_write(series, &f, &wall, NULL, &error), error);
