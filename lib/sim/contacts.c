@@ -326,7 +326,7 @@ static bool rebuild_segment(dem_world *w, size_t segment, list *l)
             return false;
     if (!dem_extras_keep(&l->extras, s, l->items, l->count, &l->kept))
         return false;
-    s->end = s->begin + l->count;
+    segment_set_end(s, l->count, w->features.soft);
     for (size_t k = 0; k < l->count; k++)
         dem_contact_put(&w->contacts.columns, segment_place(s, k), &l->items[k]);
     dem_extras_give(&l->extras, s, l->count, l->count, &l->kept);

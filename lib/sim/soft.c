@@ -148,10 +148,35 @@ dem_status dem_soft_create(dem_world *w, double tau, dem_error *error)
     return make_weights(w, error);
 }
 
+static void release_work(dem_soft_work *work)
+{
+    void *all[] = {work->rows, work->overlap, work->place, work->patches};
+    for (size_t i = 0; i < sizeof all / sizeof *all; i++)
+        free(all[i]);
+    *work = (dem_soft_work){0};
+}
+
+// columns stand behind each other in one block; a block of lanes more for what the loops read beyond the last
+static bool reserve_work(dem_soft_work *work, size_t capacity)
+{
+    release_work(work);
+    work->rows = aligned_alloc(64, capacity * DEM_ROW * sizeof *work->rows);
+    work->overlap = dem_alloc(3 * capacity, sizeof *work->overlap);
+    work->place = dem_alloc(2 * capacity, sizeof *work->place);
+    work->patches = dem_alloc(2 * capacity, sizeof *work->patches);
+    if (!work->rows || !work->overlap || !work->place || !work->patches)
+        return false;
+    work->weight = work->overlap + capacity;
+    work->beside = work->weight + capacity;
+    work->member = work->place + capacity;
+    work->sorted = work->patches + capacity;
+    return true;
+}
+
 void dem_soft_release(dem_world *w)
 {
     for (int t = 0; w->soft.work && t < w->threads; t++)
-        free(w->soft.work[t]);
+        release_work(&w->soft.work[t]);
     free(w->soft.work);
     free(w->soft.weights);
     free(w->soft.first);
@@ -168,15 +193,12 @@ dem_status dem_soft_reserve(dem_world *w, dem_error *error)
             most = size > most ? size : most;
         }
     }
-    if (most < w->soft.capacity)
+    if (most + DEM_BLOCK_LANES <= w->soft.capacity)
         return DEM_OK;
-    size_t capacity = most + most / 4 + DEM_BLOCK_LANES;
-    for (int t = 0; t < w->threads; t++) {
-        free(w->soft.work[t]);
-        w->soft.work[t] = aligned_alloc(64, capacity * DEM_ROW * sizeof(double));
-        if (!w->soft.work[t])
+    size_t capacity = most + most / 4 + 2 * DEM_BLOCK_LANES;
+    for (int t = 0; t < w->threads; t++)
+        if (!reserve_work(&w->soft.work[t], capacity))
             return dem_fail_memory(error);
-    }
     w->soft.capacity = capacity;
     return DEM_OK;
 }
@@ -184,14 +206,14 @@ dem_status dem_soft_reserve(dem_world *w, dem_error *error)
 void dem_soft_pairs(dem_world *w, size_t begin, size_t end, double kick, size_t thread)
 {
     for (size_t i = begin; i < end; i++)
-        w->soft.kernels->segment(w, i, -1, kick, w->soft.work[thread], NULL);
+        w->soft.kernels->segment(w, i, -1, kick, &w->soft.work[thread], NULL);
 }
 
 void dem_soft_walls(dem_world *w, size_t begin, size_t end, double kick, size_t thread)
 {
     for (int form = 0; form < DEM_WALL_FORMS; form++)
         for (size_t i = begin; w->wall_contacts[form].segments && i < end; i++)
-            w->soft.kernels->segment(w, i, form, kick, w->soft.work[thread], NULL);
+            w->soft.kernels->segment(w, i, form, kick, &w->soft.work[thread], NULL);
 }
 
 void dem_soft_records(dem_world *w, size_t segment, int form, dem_contact_record *records)
@@ -201,5 +223,5 @@ void dem_soft_records(dem_world *w, size_t segment, int form, dem_contact_record
     if (s->begin == s->end)
         return;
     memset(records, 0, (s->end - s->begin) * sizeof *records);
-    w->soft.kernels->segment(w, segment, form, 0, w->soft.work[0], records);
+    w->soft.kernels->segment(w, segment, form, 0, &w->soft.work[0], records);
 }

@@ -26,14 +26,31 @@
 /// Pairs of spheres count down to this overlap [tau]; with less than the half of it, in part.
 #define DEM_SOFT_REACH 6.0
 
+/// The pairs of spheres of one pair of bodies, or of one group of them.
+typedef struct dem_soft_patch {
+    uint32_t begin, count;       ///< of its members
+    uint32_t place, memory;      ///< contact of the deepest pair, and that which remembers, or DEM_SOFT_NONE
+    double deepest, sum, depth;  ///< deepest overlap [m], S over e^(deepest / tau), D [m]
+} dem_soft_patch;
+#define DEM_SOFT_NONE UINT32_MAX
+
+/// What is found of a segment's contacts within the reach.
+typedef struct dem_soft_work {
+    double *rows;                       ///< [8 a pair] see soft_patch.h
+    double *overlap, *weight, *beside;  ///< beside: the patch's deepest overlap [m]
+    uint32_t *place;                    ///< in the segment
+    uint32_t *member;                   ///< pairs by patch
+    dem_soft_patch *patches, *sorted;
+} dem_soft_work;
+
 typedef struct dem_soft {
     double tau;          ///< [m]; 0: contacts are not soft
     bool automatic;      ///< tau was not given
     double *weights;     ///< of the spheres of each shape and rung of sizes [-]
     uint32_t *first;     ///< [bodies] weight of the body's first sphere
     double *radius;      ///< [bodies] of curvature [m]
-    double **work;       ///< [threads] rows of a segment's contacts, and one of none behind them
-    size_t capacity;     ///< rows in each
+    dem_soft_work *work; ///< [threads]
+    size_t capacity;     ///< pairs in each
     size_t table_count;  ///< tables of weights that were made
     const struct dem_soft_kernels *kernels;
 } dem_soft;
@@ -87,7 +104,8 @@ bool dem_soft_weigh(const double (*spheres)[4], size_t count, double tau, double
 /// The loop over the contacts of a segment, compiled once per instruction set (kernels.cmake); all give the same bits.
 /// Forces, or records.
 typedef struct dem_soft_kernels {
-    void (*segment)(dem_world *world, size_t segment, int form, double kick, double *work, dem_contact_record *records);
+    void (*segment)(dem_world *world, size_t segment, int form, double kick, dem_soft_work *work,
+                    dem_contact_record *records);
 } dem_soft_kernels;
 
 /// The set named; NULL: none such, or not usable here.

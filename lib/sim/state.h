@@ -89,6 +89,7 @@ typedef struct dem_pairs {
 typedef struct dem_segment {
     size_t begin, end, capacity;                   ///< multiples of 8
     size_t slot_begin, slot_count, slot_capacity;  ///< momenta for bodies of other domains
+    size_t across;  ///< blocks that neighbours in the list are dealt to
     bool dirty;
 } dem_segment;
 
@@ -245,11 +246,15 @@ struct dem_world {
 };
 
 /// The k-th contact of a segment's list: neighbours in the list stand in different blocks of 8, so that the lanes of a
-/// block mostly hit different bodies.
+/// block mostly hit different bodies. Soft contacts stand one after the other: their sums are over neighbours.
 static inline size_t segment_place(const dem_segment *s, size_t k)
 {
-    size_t blocks = (s->end - s->begin) / DEM_BLOCK_LANES;
-    return s->begin + (k % blocks) * DEM_BLOCK_LANES + k / blocks;
+    return s->begin + (k % s->across) * DEM_BLOCK_LANES + k / s->across;
+}
+static inline void segment_set_end(dem_segment *s, size_t count, bool soft)
+{
+    s->end = s->begin + count;
+    s->across = soft ? 1 : count / DEM_BLOCK_LANES;
 }
 
 static inline double *body_pose(const dem_bodies *b, size_t row)

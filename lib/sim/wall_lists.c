@@ -234,7 +234,7 @@ static bool put_lists(wall_look *look, dem_wall_form form, size_t *needed)
         const dem_contact_item *items = list->count ? look->items + list->begin : NULL;
         good = dem_extras_keep(&extras, s, items, list->count, &kept);
         size_t full = (list->count + DEM_BLOCK_LANES - 1) / DEM_BLOCK_LANES * DEM_BLOCK_LANES;
-        s->end = s->begin + full;
+        segment_set_end(s, full, w->features.soft);
         s->dirty = false;
         for (size_t k = 0; k < full; k++)
             dem_contact_put(&contacts->columns, segment_place(s, k),
