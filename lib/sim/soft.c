@@ -90,7 +90,7 @@ static dem_status make_weights(dem_world *w, dem_error *error)
             rungs[count++] = (rung){shape, step, (uint32_t)filled};
             filled += t->count;
         }
-        w->soft.first[row] = rungs[k].first;
+        w->soft.first[row] = rungs[k].first - t->first;
     }
     w->soft.table_count = count;
     free(rungs);
@@ -162,14 +162,14 @@ static bool reserve_work(dem_soft_work *work, size_t capacity)
     release_work(work);
     work->rows = aligned_alloc(64, capacity * DEM_ROW * sizeof *work->rows);
     work->overlap = dem_alloc(3 * capacity, sizeof *work->overlap);
-    work->place = dem_alloc(2 * capacity, sizeof *work->place);
-    work->patches = dem_alloc(2 * capacity, sizeof *work->patches);
+    work->place = dem_alloc(3 * capacity, sizeof *work->place);
+    work->patches = dem_alloc(capacity, sizeof *work->patches);
     if (!work->rows || !work->overlap || !work->place || !work->patches)
         return false;
     work->weight = work->overlap + capacity;
     work->beside = work->weight + capacity;
     work->member = work->place + capacity;
-    work->sorted = work->patches + capacity;
+    work->sorted = work->member + capacity;
     return true;
 }
 

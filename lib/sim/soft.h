@@ -40,20 +40,26 @@ typedef struct dem_soft_work {
     double *overlap, *weight, *beside;  ///< beside: the patch's deepest overlap [m]
     uint32_t *place;                    ///< in the segment
     uint32_t *member;                   ///< pairs by patch
-    dem_soft_patch *patches, *sorted;
+    uint32_t *sorted;                   ///< patches that act
+    dem_soft_patch *patches;
 } dem_soft_work;
 
 typedef struct dem_soft {
     double tau;          ///< [m]; 0: contacts are not soft
     bool automatic;      ///< tau was not given
     double *weights;     ///< of the spheres of each shape and rung of sizes [-]
-    uint32_t *first;     ///< [bodies] weight of the body's first sphere
+    uint32_t *first;     ///< [bodies] weight of a sphere: this plus the sphere's row, modulo 2^32
     double *radius;      ///< [bodies] of curvature [m]
     dem_soft_work *work; ///< [threads]
     size_t capacity;     ///< pairs in each
     size_t table_count;  ///< tables of weights that were made
     const struct dem_soft_kernels *kernels;
 } dem_soft;
+
+static inline double soft_weight(const dem_soft *soft, uint32_t row, uint32_t sphere)
+{
+    return soft->weights[(uint32_t)(soft->first[row] + sphere)];
+}
 
 /// The normals about which the contacts with a mesh are grouped: that of the deepest, of the deepest that is not near
 /// it, and so on. A contact belongs to the first one that it is near to.

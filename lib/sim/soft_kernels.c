@@ -7,6 +7,8 @@
 #include "sim/contacts.h"
 #include "sim/soft_law.h"
 
+enum { KEPT = 9 };  // numbers that a patch remembers
+
 // what a segment's loops work on
 typedef struct soft_job {
     dem_world *w;
@@ -17,12 +19,24 @@ typedef struct soft_job {
     dem_soft_work *work;
     dem_tally *tally;
     dem_contact_record *records;  // NULL: forces
-    size_t pairs, patches;
+    double *kept[KEPT];           // columns of what contacts remember, from the segment's first; NULL: there is none
+    double *attached;
+    size_t pairs, patches, acting;
 } soft_job;
+
+static void list_kept(soft_job *job)
+{
+    const dem_contact_columns *c = &job->contacts->columns;
+    double *const kept[KEPT] = {c->spring[0], c->spring[1], c->spring[2], c->dash[0], c->dash[1],
+                                c->dash[2],   c->twist,     c->patch,     c->loss};
+    for (int k = 0; k < KEPT; k++)
+        job->kept[k] = kept[k] ? kept[k] + job->s->begin : NULL;
+    job->attached = c->attached + job->s->begin;
+}
 
 // ---- pairs within the reach, and those that remember
 
-static void keep_near(soft_job *job, const double *attached, size_t at, const contact_batch *batch, size_t g)
+DEM_INLINE void keep_near(soft_job *job, size_t at, const contact_batch *batch, size_t g)
 {
     dem_soft_work *work = job->work;
     wide overlap = wide_load(batch->at[AT_OVERLAP] + g), row[8];
@@ -30,7 +44,7 @@ static void keep_near(soft_job *job, const double *attached, size_t at, const co
     if (job->form == DEM_FORM_MESH)  // places that are not in use have no normal
         overlap = wide_select(wide_less(wide_all(0.5), dot3(n, n)), overlap, wide_all(DEM_SOFT_APART));
     wide_mask near = wide_less(wide_all(-DEM_SOFT_REACH * job->w->soft.tau), overlap);
-    unsigned bits = wide_bits(wide_either(near, wide_less(wide_all(0), wide_load(attached + at))));
+    unsigned bits = wide_bits(wide_either(near, wide_less(wide_all(0), wide_load(job->attached + at))));
     if (!bits)
         return;
     row[ROW_OVERLAP] = overlap;
@@ -43,12 +57,13 @@ static void keep_near(soft_job *job, const double *attached, size_t at, const co
     row[ROW_SHARE] = wide_all(0);
     double rows[DEM_WIDTH][8] __attribute__((aligned(64)));
     rows_store_next(rows[0], DEM_ROW, row);
-    for (size_t i = 0; i < DEM_WIDTH; i++) {
-        size_t k = job->pairs;
-        memcpy(work->rows + DEM_ROW * k, rows[i], sizeof rows[i]);
+    for (; bits; bits &= bits - 1) {
+        unsigned i = (unsigned)__builtin_ctz(bits);
+        size_t k = job->pairs++;
+        for (int j = 0; j < DEM_ROW; j++)
+            work->rows[DEM_ROW * k + (size_t)j] = rows[i][j];
         work->overlap[k] = rows[i][ROW_OVERLAP];
-        work->place[k] = (uint32_t)(at + i - job->s->begin);
-        job->pairs += bits >> i & 1;
+        work->place[k] = (uint32_t)(at + i);
     }
 }
 
@@ -57,15 +72,17 @@ DEM_INLINE void find_near(const dem_features f, soft_job *job)
     const dem_contact_columns *c = &job->contacts->columns;
     dem_rows rows = world_rows(job->w);
     contact_batch batch;
-    for (size_t from = job->s->begin; from < job->s->end; from += BATCH) {
-        size_t count = job->s->end - from < BATCH ? job->s->end - from : BATCH;
-        for (size_t g = 0; g < count; g += DEM_WIDTH) {
+    size_t size = job->s->end - job->s->begin, begin = job->s->begin;
+    for (size_t from = 0; from < size; from += BATCH) {
+        size_t count = size - from < BATCH ? size - from : BATCH;
+        for (size_t g = 0; g < count; g += DEM_WIDTH)
             if (job->form < 0)
-                pair_geometry(f, &rows, c, from + g, g, &batch, &job->tally->overlap_ratio);
+                pair_geometry(f, &rows, c, begin + from + g, g, &batch, &job->tally->overlap_ratio);
             else
-                wall_geometry(f, &rows, c, (dem_wall_form)job->form, from + g, g, &batch, &job->tally->overlap_ratio);
-            keep_near(job, c->attached, from + g, &batch, g);
-        }
+                wall_geometry(f, &rows, c, (dem_wall_form)job->form, begin + from + g, g, &batch,
+                              &job->tally->overlap_ratio);
+        for (size_t g = 0; g < count; g += DEM_WIDTH)
+            keep_near(job, from + g, &batch, g);
     }
     // one of none, and what fills up the last lanes
     memset(job->work->rows + DEM_ROW * job->pairs, 0, DEM_ROW * sizeof *job->work->rows);
@@ -77,18 +94,38 @@ DEM_INLINE void find_near(const dem_features f, soft_job *job)
 
 // ---- patches
 
-static double weight_of(const dem_world *w, uint32_t row, uint32_t sphere)
-{
-    return w->soft.weights[w->soft.first[row] + sphere - w->templates.items[w->bodies.shape[row]].first];
-}
-
-static bool same_bodies(const soft_job *job, size_t i, size_t k)
+// of the pairs: those of one pair of bodies, or of a body and a wall, follow each other
+static void find_weights(const soft_job *job)
 {
     const dem_contact_columns *c = &job->contacts->columns;
-    size_t p = job->s->begin + job->work->place[i], q = job->s->begin + job->work->place[k];
+    const dem_soft *soft = &job->w->soft;
+    const uint32_t *a = c->a + job->s->begin, *sphere_a = c->sphere_a + job->s->begin;
+    for (size_t k = 0; k < job->pairs; k++) {
+        size_t at = job->work->place[k];
+        job->work->weight[k] = soft_weight(soft, a[at], sphere_a[at]);
+    }
     if (job->form >= 0)
-        return c->a[p] == c->a[q] && c->sphere_b[p] == c->sphere_b[q];
-    return c->a[p] == c->a[q] && c->b[p] == c->b[q] && !(c->shift && c->shift[p] != c->shift[q]);
+        return;
+    const uint32_t *b = c->b + job->s->begin, *sphere_b = c->sphere_b + job->s->begin;
+    for (size_t k = 0; k < job->pairs; k++) {
+        size_t at = job->work->place[k];
+        job->work->weight[k] *= soft_weight(soft, b[at], sphere_b[at]);
+    }
+}
+
+// the end of the pairs from `begin` on that are of the same bodies
+static size_t same_bodies(const soft_job *job, size_t begin)
+{
+    const dem_contact_columns *c = &job->contacts->columns;
+    const uint32_t *place = job->work->place, *a = c->a + job->s->begin, *shift = NULL;
+    const uint32_t *b = (job->form < 0 ? c->b : c->sphere_b) + job->s->begin;
+    if (c->shift)
+        shift = c->shift + job->s->begin;
+    size_t first = place[begin], end = begin + 1;
+    while (end < job->pairs && a[place[end]] == a[first] && b[place[end]] == b[first] &&
+           !(shift && shift[place[end]] != shift[first]))
+        end++;
+    return end;
 }
 
 static dem_vec3 normal_of(const soft_job *job, size_t pair)
@@ -101,28 +138,34 @@ static dem_vec3 normal_of(const soft_job *job, size_t pair)
 static void make_patch(soft_job *job, size_t begin, size_t end, const dem_soft_leaders *leaders, int group)
 {
     dem_soft_work *work = job->work;
-    const double *attached = job->contacts->columns.attached + job->s->begin;
-    size_t first = job->patches ? work->patches[job->patches - 1].begin + work->patches[job->patches - 1].count : 0;
-    dem_soft_patch p = {.begin = (uint32_t)first, .memory = DEM_SOFT_NONE, .deepest = 2 * DEM_SOFT_APART};
-    double remembers = 3 * DEM_SOFT_APART;
+    size_t first = 0, count = 0;
+    if (job->patches)
+        first = work->patches[job->patches - 1].begin + work->patches[job->patches - 1].count;
+    uint32_t memory = DEM_SOFT_NONE, deepest = 0;
+    double most = 2 * DEM_SOFT_APART, remembers = most;
     for (size_t k = begin; k < end; k++) {
         if (leaders && soft_group(leaders, normal_of(job, k)) != group)
             continue;
-        work->member[first + p.count++] = (uint32_t)k;
+        work->member[first + count++] = (uint32_t)k;
         double d = work->overlap[k];
-        if (d > p.deepest) {
-            p.deepest = d;
-            p.place = work->place[k];
+        uint32_t place = work->place[k];
+        if (d > most) {
+            most = d;
+            deepest = place;
         }
-        if (attached[work->place[k]] > 0 && d > remembers) {
+        if (job->attached[place] > 0 && d > remembers) {
             remembers = d;
-            p.memory = work->place[k];
+            memory = place;
         }
     }
-    for (size_t k = first; k < first + p.count; k++)
-        work->beside[work->member[k]] = p.deepest;
-    if (p.count)
-        work->patches[job->patches++] = p;
+    for (size_t k = first; k < first + count; k++)
+        work->beside[work->member[k]] = most;
+    if (count)
+        work->patches[job->patches++] = (dem_soft_patch){.begin = (uint32_t)first,
+                                                         .count = (uint32_t)count,
+                                                         .place = deepest,
+                                                         .memory = memory,
+                                                         .deepest = most};
 }
 
 // the normals to group by: of the deepest pair that is in no group yet, and so on
@@ -148,17 +191,8 @@ static void make_groups(soft_job *job, size_t begin, size_t end)
 
 static void find_patches(soft_job *job)
 {
-    const dem_contact_columns *c = &job->contacts->columns;
-    const dem_world *w = job->w;
-    for (size_t k = 0; k < job->pairs; k++) {
-        size_t at = job->s->begin + job->work->place[k];
-        job->work->weight[k] = weight_of(w, c->a[at], c->sphere_a[at]);
-        if (job->form < 0)
-            job->work->weight[k] *= weight_of(w, c->b[at], c->sphere_b[at]);
-    }
     for (size_t begin = 0, end; begin < job->pairs; begin = end) {
-        for (end = begin + 1; end < job->pairs && same_bodies(job, begin, end); end++)
-            ;
+        end = same_bodies(job, begin);
         if (job->form == DEM_FORM_MESH)
             make_groups(job, begin, end);
         else
@@ -180,108 +214,84 @@ static void take_exponentials(soft_job *job)
     }
 }
 
-// D of the patch; false: it neither touches nor remembers
-static bool find_depth(soft_job *job, dem_soft_patch *p)
+// all that count remember the same at a mesh, whose contacts may change places; else the deepest pair remembers
+static void remember(const soft_job *job, const dem_soft_patch *p, const double (*kept)[DEM_BLOCK_LANES], size_t lane)
 {
-    double tau = job->w->soft.tau;
-    p->sum = 0;
-    for (uint32_t k = 0; k < p->count; k++)
-        p->sum += job->work->weight[job->work->member[p->begin + k]];
+    bool all = job->form == DEM_FORM_MESH, touches = p->depth > 0;
+    if (p->memory != DEM_SOFT_NONE)
+        job->attached[p->memory] = 0;
+    for (uint32_t i = 0; i < (all ? p->count : 1); i++) {
+        size_t place = all ? job->work->place[job->work->member[p->begin + i]] : p->place;
+        job->attached[place] = touches;
+        for (int k = 0; k < KEPT && touches; k++)
+            if (job->kept[k])
+                job->kept[k][place] = kept[k][lane];
+    }
+}
+
+// D of the patch; false: it neither touches nor remembers
+static bool find_depth(const soft_job *job, dem_soft_patch *p)
+{
+    const dem_soft_work *work = job->work;
+    double tau = job->w->soft.tau, sum = 0;
     p->depth = -DEM_SOFT_REACH * tau;
+    if (!(p->deepest > p->depth)) {
+        if (p->memory != DEM_SOFT_NONE && !job->records)
+            remember(job, p, NULL, 0);  // far apart at once: what it remembers is of none
+        return false;
+    }
+    for (uint32_t k = 0; k < p->count; k++)
+        sum += work->weight[work->member[p->begin + k]];
+    p->sum = sum;
     // log S <= S - 1
-    bool near = p->sum > 0 && p->deepest / tau + p->sum > 1;
-    if (near || (p->memory != DEM_SOFT_NONE && p->sum > 0))
-        p->depth = larger(p->depth, p->deepest + tau * log(p->sum));
+    if (sum > 0 && (p->deepest / tau + sum > 1 || p->memory != DEM_SOFT_NONE))
+        p->depth = larger(p->depth, p->deepest + tau * log(sum));
     return p->depth > 0 || p->memory != DEM_SOFT_NONE;
 }
 
-// all that count remember the same at a mesh, whose contacts may change places; else the deepest pair remembers
-static void remember(const soft_job *job, const dem_soft_patch *p, const dem_contact_history *h)
-{
-    const dem_contact_columns *c = &job->contacts->columns;
-    const dem_contact_history none = {.attached = 0};
-    if (job->form == DEM_FORM_MESH) {
-        for (uint32_t k = 0; k < p->count; k++)
-            dem_history_put(c, job->s->begin + job->work->place[job->work->member[p->begin + k]], h);
-        return;
-    }
-    if (p->memory != DEM_SOFT_NONE && p->memory != p->place)
-        dem_history_put(c, job->s->begin + p->memory, &none);
-    dem_history_put(c, job->s->begin + p->place, h);
-}
-
-// those that act, sorted by their number of pairs; how many there are
-static size_t find_acting(soft_job *job)
+// lists the patches that act, sorted by their number of pairs
+static void find_acting(soft_job *job)
 {
     enum { BINS = 32 };
     dem_soft_work *work = job->work;
-    const dem_contact_history none = {.attached = 0};
-    size_t start[BINS + 1] = {0}, acting = 0;
+    size_t start[BINS + 2] = {0};
     for (size_t i = 0; i < job->patches; i++) {
         dem_soft_patch *p = &work->patches[i];
-        bool far = !(p->deepest > -DEM_SOFT_REACH * job->w->soft.tau);
-        if (far && p->memory != DEM_SOFT_NONE && !job->records)
-            remember(job, p, &none);  // far apart at once
-        if (far || !find_depth(job, p))
+        if (!find_depth(job, p))
             continue;
         for (uint32_t k = 0; k < p->count; k++) {
             uint32_t pair = work->member[p->begin + k];
-            work->rows[DEM_ROW * pair + ROW_SHARE] = work->overlap[pair];
+            work->rows[DEM_ROW * (size_t)pair + ROW_SHARE] = work->overlap[pair];
         }
-        work->patches[acting++] = *p;
-        start[(p->count < BINS ? p->count : BINS)]++;
+        work->patches[job->acting++] = *p;
+        start[1 + (p->count < BINS ? p->count : BINS)]++;
     }
-    for (size_t i = 0, sum = 0; i <= BINS; i++) {
-        size_t here = start[i];
-        start[i] = sum;
-        sum += here;
-    }
-    for (size_t i = 0; i < acting; i++) {
+    for (size_t i = 1; i <= BINS; i++)
+        start[i] += start[i - 1];
+    for (size_t i = 0; i < job->acting; i++) {
         uint32_t count = work->patches[i].count;
-        work->sorted[start[count < BINS ? count : BINS]++] = work->patches[i];
+        work->sorted[start[count < BINS ? count : BINS]++] = (uint32_t)i;
     }
-    return acting;
 }
 
 // ---- eight patches
 
-enum { KEPT = 9 };  // numbers that a patch remembers
-
+// columns by lane
 typedef struct soft_eight {
-    const dem_soft_patch *p;
+    const dem_soft_patch *p[DEM_BLOCK_LANES];
     size_t count;
     uint32_t a[DEM_BLOCK_LANES], b[DEM_BLOCK_LANES], law[DEM_BLOCK_LANES], shift[DEM_BLOCK_LANES];
     uint32_t first[DEM_BLOCK_LANES], members[DEM_BLOCK_LANES];
-    double sum[DEM_BLOCK_LANES], depth[DEM_BLOCK_LANES], reduced[DEM_BLOCK_LANES], area[DEM_BLOCK_LANES];
+    double sum[DEM_BLOCK_LANES], depth[DEM_BLOCK_LANES], radius[2][DEM_BLOCK_LANES];
     double kept[KEPT][DEM_BLOCK_LANES];
     double momentum[2][DEM_BLOCK_LANES][DEM_ROW] __attribute__((aligned(64)));
     double force[3][DEM_BLOCK_LANES], hardness[DEM_BLOCK_LANES];
 } soft_eight;
 
-static void put_kept(soft_eight *e, size_t i, const dem_contact_history *h)
-{
-    const double kept[KEPT] = {h->spring[0], h->spring[1], h->spring[2], h->dash[0], h->dash[1],
-                               h->dash[2],   h->twist,     h->patch,     h->loss};
-    for (int k = 0; k < KEPT; k++)
-        e->kept[k][i] = kept[k];
-}
-
-static dem_contact_history get_kept(const soft_eight *e, size_t i)
-{
-    return (dem_contact_history){.spring = {e->kept[0][i], e->kept[1][i], e->kept[2][i]},
-                                 .dash = {e->kept[3][i], e->kept[4][i], e->kept[5][i]},
-                                 .twist = e->kept[6][i],
-                                 .patch = e->kept[7][i],
-                                 .attached = e->p[i].depth > 0,
-                                 .loss = e->kept[8][i]};
-}
-
 static void fill_lane(const soft_job *job, soft_eight *e, size_t i)
 {
     const dem_contact_columns *c = &job->contacts->columns;
-    const dem_soft *soft = &job->w->soft;
-    const dem_soft_patch *p = &e->p[i];
-    const dem_contact_history none = {.attached = 0};
+    const dem_soft_patch *p = e->p[i];
     size_t at = job->s->begin + p->place;
     bool wall = job->form >= 0;
     e->a[i] = c->a[at];
@@ -292,28 +302,23 @@ static void fill_lane(const soft_job *job, soft_eight *e, size_t i)
     e->members[i] = p->count;
     e->sum[i] = p->sum;
     e->depth[i] = p->depth;
-    double ra = soft->radius[e->a[i]], rb = wall ? ra : soft->radius[e->b[i]], least = smaller(ra, rb);
-    e->reduced[i] = wall ? ra : ra * rb / (ra + rb);
-    e->area[i] = wall ? ra : least * least / (ra + rb);
-    if (p->memory == DEM_SOFT_NONE)
-        put_kept(e, i, &none);
-    else {
-        dem_contact_history h = dem_history_get(c, job->s->begin + p->memory);
-        put_kept(e, i, &h);
-    }
+    e->radius[0][i] = job->w->soft.radius[e->a[i]];
+    e->radius[1][i] = wall ? e->radius[0][i] : job->w->soft.radius[e->b[i]];
+    for (int k = 0; k < KEPT; k++)
+        e->kept[k][i] = job->kept[k] && p->memory != DEM_SOFT_NONE ? job->kept[k][p->memory] : 0;
 }
 
 // a lane without a patch: dummies, or the wall behind the last
 static void fill_idle(const soft_job *job, soft_eight *e, size_t i)
 {
-    const dem_contact_history none = {.attached = 0};
     e->a[i] = job->w->bodies.dummy;
     e->b[i] = job->form < 0 ? e->a[i] + 1 : (uint32_t)job->w->walls.count;
     e->law[i] = e->shift[i] = e->first[i] = e->members[i] = 0;
     e->sum[i] = 0;
     e->depth[i] = -DEM_SOFT_REACH * job->w->soft.tau;
-    e->reduced[i] = e->area[i] = 1;
-    put_kept(e, i, &none);
+    e->radius[0][i] = e->radius[1][i] = 1;
+    for (int k = 0; k < KEPT; k++)
+        e->kept[k][i] = 0;
 }
 
 DEM_INLINE soft_lanes load_lanes(const dem_features f, const soft_job *job, const soft_eight *e, size_t l)
@@ -353,12 +358,16 @@ DEM_INLINE soft_lanes load_lanes(const dem_features f, const soft_job *job, cons
 DEM_INLINE soft_spot load_spot(const dem_features f, const soft_job *job, const soft_eight *e, size_t l)
 {
     const dem_world *w = job->w;
-    soft_spot spot = {.reduced = wide_load(e->reduced + l),
-                      .area = wide_load(e->area + l),
+    bool wall = job->form >= 0;
+    wide a = wide_load(e->radius[0] + l), b = wide_load(e->radius[1] + l), least = wide_min(a, b);
+    soft_spot spot = {.reduced = reduced_radius(a, b),
+                      .area = least * least / (a + b),
                       .tau = w->soft.tau,
                       .last_step = w->last_step,
                       .next_step = w->next_step,
-                      .wall = job->form >= 0};
+                      .wall = wall};
+    if (wall)
+        spot.reduced = spot.area = a;
     for (int k = 0; f.mixed && k < LAW_MORE; k += 8)
         rows_load(w->laws.rows + k, LAW_SLOTS, e->law + l, spot.law + k);
     for (int k = 0; !f.mixed && k < LAW_MORE; k++)
@@ -406,7 +415,7 @@ static void put_records(const soft_job *job, const soft_eight *e, size_t l, cons
     for (int k = TOLD_OVERLAP; k < TOLD; k++)
         wide_store(told[k], numbers[k - TOLD_OVERLAP]);
     for (size_t i = 0; i < DEM_WIDTH && l + i < e->count; i++) {
-        dem_contact_record *to = &job->records[e->p[l + i].place];
+        dem_contact_record *to = &job->records[e->p[l + i]->place];
         to->lost_friction = told[TOLD_FRICTION][i];
         to->lost_viscous = told[TOLD_VISCOUS][i];
         to->wall_power = told[TOLD_POWER][i];
@@ -469,23 +478,23 @@ static void push(double *to, const double *add)
         to[k] += add[k];
 }
 
-DEM_INLINE void act_eight(const dem_features f, soft_job *job, const dem_soft_patch *patches, size_t count)
+DEM_INLINE void act_eight(const dem_features f, soft_job *job, size_t from)
 {
     const dem_contact_columns *c = &job->contacts->columns;
     double *momentum = job->w->bodies.momentum;
     soft_eight e;
-    e.p = patches;
-    e.count = count;
-    for (size_t i = 0; i < count; i++)
+    e.count = job->acting - from < DEM_BLOCK_LANES ? job->acting - from : DEM_BLOCK_LANES;
+    for (size_t i = 0; i < e.count; i++) {
+        e.p[i] = &job->work->patches[job->work->sorted[from + i]];
         fill_lane(job, &e, i);
-    for (size_t i = count; i < DEM_BLOCK_LANES; i++)
+    }
+    for (size_t i = e.count; i < DEM_BLOCK_LANES; i++)
         fill_idle(job, &e, i);
-    for (size_t l = 0; l < DEM_BLOCK_LANES && l < count; l += DEM_WIDTH)
+    for (size_t l = 0; l < e.count; l += DEM_WIDTH)
         act_lanes(f, job, &e, l);
-    for (size_t i = 0; i < count && !job->records; i++) {
-        size_t at = job->s->begin + patches[i].place;
-        dem_contact_history h = get_kept(&e, i);
-        remember(job, &patches[i], &h);
+    for (size_t i = 0; i < e.count && !job->records; i++) {
+        size_t at = job->s->begin + e.p[i]->place;
+        remember(job, e.p[i], e.kept, i);
         push(momentum + DEM_ROW * (size_t)e.a[i], e.momentum[0][i]);
         if (job->form < 0)
             push(momentum + DEM_ROW * (size_t)c->target[at], e.momentum[1][i]);
@@ -516,20 +525,29 @@ static void segment(dem_world *w, size_t which, int form, double kick, dem_soft_
         return;
     dem_features f = soft_features(&w->features);
     dem_tally *tally = &w->tallies[(size_t)(1 + form) * w->segment_count + which], scratch = {.overlap_ratio = 0};
-    soft_job job = {w, contacts, s, form, kick, work, records ? &scratch : tally, records, 0, 0};
+    soft_job job = {.w = w,
+                    .contacts = contacts,
+                    .s = s,
+                    .form = form,
+                    .kick = kick,
+                    .work = work,
+                    .tally = records ? &scratch : tally,
+                    .records = records};
+    list_kept(&job);
     const dem_features geometry = {.offset = true, .scaled = true},
                        images = {.offset = true, .scaled = true, .periodic = true};
     if (f.periodic)
         find_near(images, &job);
     else
         find_near(geometry, &job);
+    find_weights(&job);
     find_patches(&job);
     take_exponentials(&job);
     if (f.reaction && form >= 0 && !records)
         clear_reactions(&job);
-    size_t acting = find_acting(&job);
-    for (size_t i = 0; i < acting; i += DEM_BLOCK_LANES)
-        act_eight(f, &job, work->sorted + i, acting - i < DEM_BLOCK_LANES ? acting - i : DEM_BLOCK_LANES);
+    find_acting(&job);
+    for (size_t from = 0; from < job.acting; from += DEM_BLOCK_LANES)
+        act_eight(f, &job, from);
 }
 
 const dem_soft_kernels DEM_LEVEL_OF(dem_soft_kernels) = {.segment = segment};
