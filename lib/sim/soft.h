@@ -26,33 +26,39 @@
 /// Pairs of spheres count down to this overlap [tau]; with less than the half of it, in part.
 #define DEM_SOFT_REACH 6.0
 
-/// The pairs of spheres of one pair of bodies, or of one group of them.
-typedef struct dem_soft_patch {
-    uint32_t begin, count;       ///< of its members
-    uint32_t place, memory;      ///< contact of the deepest pair, and that which remembers, or DEM_SOFT_NONE
-    double deepest, sum, depth;  ///< deepest overlap [m], S over e^(deepest / tau), D [m]
-} dem_soft_patch;
-#define DEM_SOFT_NONE UINT32_MAX
+/// The contacts of one pair of bodies, or of a body and a wall, stand in a run. Its first one remembers for all; at a
+/// mesh, where they change places, all do.
+typedef struct dem_soft_runs {
+    uint32_t *first;  ///< [count + 1] contact, from the segment's first
+    double *rise;     ///< [count] what D is above the deepest overlap at most [m]
+    size_t count, capacity, rise_capacity;
+} dem_soft_runs;
 
-/// What is found of a segment's contacts within the reach.
+/// Of a run, or of a group of it.
+typedef struct dem_soft_patch {
+    uint32_t row, count;     ///< first of its rows
+    uint32_t place, memory;  ///< contact that stands for it, and that which remembers
+    double deepest;          ///< overlap [m]
+} dem_soft_patch;
+
+/// What is found of a segment's contacts.
 typedef struct dem_soft_work {
-    double *rows;                       ///< [8 a pair] see soft_patch.h
-    double *overlap, *weight, *beside;  ///< beside: the patch's deepest overlap [m]
-    uint32_t *place;                    ///< in the segment
-    uint32_t *member;                   ///< pairs by patch
-    uint32_t *sorted;                   ///< patches that act
+    double *rows;     ///< [8 a contact, then 8 a member of a group] see soft_patch.h
+    double *overlap;  ///< [m]
+    uint32_t *place;  ///< contacts of the rows of groups
+    uint32_t *sorted;
     dem_soft_patch *patches;
 } dem_soft_work;
 
 typedef struct dem_soft {
-    double tau;          ///< [m]; 0: contacts are not soft
-    bool automatic;      ///< tau was not given
-    double *weights;     ///< of the spheres of each shape and rung of sizes [-]
-    uint32_t *first;     ///< [bodies] weight of a sphere: this plus the sphere's row, modulo 2^32
-    double *radius;      ///< [bodies] of curvature [m]
-    dem_soft_work *work; ///< [threads]
-    size_t capacity;     ///< pairs in each
-    size_t table_count;  ///< tables of weights that were made
+    double tau;           ///< [m]; 0: contacts are not soft
+    bool automatic;       ///< tau was not given
+    double *weights;      ///< of the spheres of each shape and rung of sizes [-]
+    uint32_t *first;      ///< [bodies] weight of a sphere: this plus the sphere's row, modulo 2^32
+    double *radius;       ///< [bodies] of curvature [m]
+    dem_soft_work *work;  ///< [threads]
+    size_t capacity;      ///< contacts in each
+    size_t table_count;   ///< tables of weights that were made
     const struct dem_soft_kernels *kernels;
 } dem_soft;
 
@@ -90,7 +96,9 @@ double dem_soft_likely_overlap(const dem_world *world);
 /// What --explain says of the number of spheres that touch at once.
 void dem_soft_explain(const dem_world *world, dem_buffer *out);
 
-/// Room for the work of the segments as they are now.
+void dem_soft_runs_release(dem_soft_runs *runs);
+
+/// Finds the runs and weights of the segments whose lists have changed, and makes room for the work of all.
 dem_status dem_soft_reserve(dem_world *world, dem_error *error);
 
 /// The forces of the contacts of the segments [begin, end), added to the momenta: of pairs, or of all walls.

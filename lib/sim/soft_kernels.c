@@ -1,8 +1,8 @@
 // Compiled once as it is (plain) and once per instruction set with DEM_KERNELS set to v3 or v4.
 //
-// A segment's contacts go through four loops. The first measures all pairs of spheres and keeps those within the reach;
-// the next ones sort these by patch, take the exponentials, and sum up S. Only patches that touch go on: sums of moments,
-// and the laws, for DEM_WIDTH patches at a time, those with about as many pairs side by side.
+// Two loops over the contacts of a segment. The first measures all pairs of spheres, which stand in runs of the same
+// bodies. Each run that is within the reach, or remembers, is a patch. The second goes through DEM_WIDTH patches side
+// by side, those with about as many pairs: sums, and then the laws.
 #include "base/level.h"
 #include "sim/contacts.h"
 #include "sim/soft_law.h"
@@ -21,7 +21,7 @@ typedef struct soft_job {
     dem_contact_record *records;  // NULL: forces
     double *kept[KEPT];           // columns of what contacts remember, from the segment's first; NULL: there is none
     double *attached;
-    size_t pairs, patches, acting;
+    size_t size, rows, patches;
 } soft_job;
 
 static void list_kept(soft_job *job)
@@ -34,19 +34,15 @@ static void list_kept(soft_job *job)
     job->attached = c->attached + job->s->begin;
 }
 
-// ---- pairs within the reach, and those that remember
+// ---- pairs
 
-DEM_INLINE void keep_near(soft_job *job, size_t at, const contact_batch *batch, size_t g)
+DEM_INLINE void put_rows(soft_job *job, size_t at, const contact_batch *batch, size_t g)
 {
-    dem_soft_work *work = job->work;
     wide overlap = wide_load(batch->at[AT_OVERLAP] + g), row[8];
     wide3 n = get3(batch, AT_NORMAL, g), arm = get3(batch, AT_A, g);
     if (job->form == DEM_FORM_MESH)  // places that are not in use have no normal
         overlap = wide_select(wide_less(wide_all(0.5), dot3(n, n)), overlap, wide_all(DEM_SOFT_APART));
-    wide_mask near = wide_less(wide_all(-DEM_SOFT_REACH * job->w->soft.tau), overlap);
-    unsigned bits = wide_bits(wide_either(near, wide_less(wide_all(0), wide_load(job->attached + at))));
-    if (!bits)
-        return;
+    wide_store(job->work->overlap + at, overlap);
     row[ROW_OVERLAP] = overlap;
     row[ROW_NORMAL] = n.x;
     row[ROW_NORMAL + 1] = n.y;
@@ -54,121 +50,97 @@ DEM_INLINE void keep_near(soft_job *job, size_t at, const contact_batch *batch, 
     row[ROW_ARM] = arm.x;
     row[ROW_ARM + 1] = arm.y;
     row[ROW_ARM + 2] = arm.z;
-    row[ROW_SHARE] = wide_all(0);
-    double rows[DEM_WIDTH][8] __attribute__((aligned(64)));
-    rows_store_next(rows[0], DEM_ROW, row);
-    for (; bits; bits &= bits - 1) {
-        unsigned i = (unsigned)__builtin_ctz(bits);
-        size_t k = job->pairs++;
-        for (int j = 0; j < DEM_ROW; j++)
-            work->rows[DEM_ROW * k + (size_t)j] = rows[i][j];
-        work->overlap[k] = rows[i][ROW_OVERLAP];
-        work->place[k] = (uint32_t)(at + i);
-    }
+    row[ROW_WEIGHT] = wide_load(job->contacts->columns.weight + job->s->begin + at);
+    rows_store_next(job->work->rows + DEM_ROW * at, DEM_ROW, row);
 }
 
-DEM_INLINE void find_near(const dem_features f, soft_job *job)
+DEM_INLINE void measure(const dem_features f, soft_job *job)
 {
     const dem_contact_columns *c = &job->contacts->columns;
     dem_rows rows = world_rows(job->w);
     contact_batch batch;
-    size_t size = job->s->end - job->s->begin, begin = job->s->begin;
-    for (size_t from = 0; from < size; from += BATCH) {
-        size_t count = size - from < BATCH ? size - from : BATCH;
+    size_t begin = job->s->begin;
+    double largest = job->tally->overlap_ratio;
+    for (size_t from = 0; from < job->size; from += BATCH) {
+        size_t count = job->size - from < BATCH ? job->size - from : BATCH;
         for (size_t g = 0; g < count; g += DEM_WIDTH)
             if (job->form < 0)
-                pair_geometry(f, &rows, c, begin + from + g, g, &batch, &job->tally->overlap_ratio);
+                pair_geometry(f, &rows, c, begin + from + g, g, &batch, &largest);
             else
-                wall_geometry(f, &rows, c, (dem_wall_form)job->form, begin + from + g, g, &batch,
-                              &job->tally->overlap_ratio);
+                wall_geometry(f, &rows, c, (dem_wall_form)job->form, begin + from + g, g, &batch, &largest);
         for (size_t g = 0; g < count; g += DEM_WIDTH)
-            keep_near(job, from + g, &batch, g);
+            put_rows(job, from + g, &batch, g);
     }
-    // one of none, and what fills up the last lanes
-    memset(job->work->rows + DEM_ROW * job->pairs, 0, DEM_ROW * sizeof *job->work->rows);
-    for (size_t k = job->pairs; k < job->pairs + DEM_WIDTH; k++) {
-        job->work->overlap[k] = DEM_SOFT_APART;
-        job->work->weight[k] = job->work->beside[k] = 0;
-    }
+    job->tally->overlap_ratio = largest;
+    // a row of none
+    memset(job->work->rows + DEM_ROW * job->size, 0, DEM_ROW * sizeof *job->work->rows);
+    job->rows = job->size + 1;
 }
 
 // ---- patches
 
-// of the pairs: those of one pair of bodies, or of a body and a wall, follow each other
-static void find_weights(const soft_job *job)
+static void find_patches(soft_job *job)
 {
-    const dem_contact_columns *c = &job->contacts->columns;
-    const dem_soft *soft = &job->w->soft;
-    const uint32_t *a = c->a + job->s->begin, *sphere_a = c->sphere_a + job->s->begin;
-    for (size_t k = 0; k < job->pairs; k++) {
-        size_t at = job->work->place[k];
-        job->work->weight[k] = soft_weight(soft, a[at], sphere_a[at]);
+    const dem_soft_runs *runs = &job->contacts->runs[job->s - job->contacts->segments];
+    const double *overlap = job->work->overlap, *attached = job->attached;
+    dem_soft_patch *patch = job->work->patches;
+    for (size_t r = 0; r < runs->count; r++) {
+        uint32_t first = runs->first[r], end = runs->first[r + 1];
+        double deepest = overlap[first];
+        for (uint32_t k = first + 1; k < end; k++)
+            deepest = larger(deepest, overlap[k]);
+        if (deepest + runs->rise[r] > 0 || attached[first] > 0)
+            *patch++ = (dem_soft_patch){first, end - first, first, first, deepest};
     }
-    if (job->form >= 0)
-        return;
-    const uint32_t *b = c->b + job->s->begin, *sphere_b = c->sphere_b + job->s->begin;
-    for (size_t k = 0; k < job->pairs; k++) {
-        size_t at = job->work->place[k];
-        job->work->weight[k] *= soft_weight(soft, b[at], sphere_b[at]);
-    }
+    job->patches = (size_t)(patch - job->work->patches);
 }
 
-// the end of the pairs from `begin` on that are of the same bodies
-static size_t same_bodies(const soft_job *job, size_t begin)
+static dem_vec3 normal_of(const soft_job *job, size_t k)
 {
-    const dem_contact_columns *c = &job->contacts->columns;
-    const uint32_t *place = job->work->place, *a = c->a + job->s->begin, *shift = NULL;
-    const uint32_t *b = (job->form < 0 ? c->b : c->sphere_b) + job->s->begin;
-    if (c->shift)
-        shift = c->shift + job->s->begin;
-    size_t first = place[begin], end = begin + 1;
-    while (end < job->pairs && a[place[end]] == a[first] && b[place[end]] == b[first] &&
-           !(shift && shift[place[end]] != shift[first]))
-        end++;
-    return end;
-}
-
-static dem_vec3 normal_of(const soft_job *job, size_t pair)
-{
-    const double *row = job->work->rows + DEM_ROW * pair;
+    const double *row = job->work->rows + DEM_ROW * k;
     return v3(row[ROW_NORMAL], row[ROW_NORMAL + 1], row[ROW_NORMAL + 2]);
 }
 
-// makes a patch of the pairs [begin, end), or of those that belong to a group of them
-static void make_patch(soft_job *job, size_t begin, size_t end, const dem_soft_leaders *leaders, int group)
+// makes a patch of those of the contacts [begin, end) of a mesh that belong to a group: copies of their rows
+static void make_group(soft_job *job, size_t begin, size_t end, const dem_soft_leaders *leaders, int group)
 {
     dem_soft_work *work = job->work;
-    size_t first = 0, count = 0;
-    if (job->patches)
-        first = work->patches[job->patches - 1].begin + work->patches[job->patches - 1].count;
-    uint32_t memory = DEM_SOFT_NONE, deepest = 0;
-    double most = 2 * DEM_SOFT_APART, remembers = most;
+    dem_soft_patch p = {.row = (uint32_t)job->rows, .deepest = 2 * DEM_SOFT_APART};
+    double remembers = 2 * DEM_SOFT_APART;
+    bool some = false;
     for (size_t k = begin; k < end; k++) {
-        if (leaders && soft_group(leaders, normal_of(job, k)) != group)
-            continue;
-        work->member[first + count++] = (uint32_t)k;
         double d = work->overlap[k];
-        uint32_t place = work->place[k];
-        if (d > most) {
-            most = d;
-            deepest = place;
+        if (!(d > DEM_SOFT_APART) || soft_group(leaders, normal_of(job, k)) != group)
+            continue;
+        memcpy(work->rows + DEM_ROW * job->rows, work->rows + DEM_ROW * k, DEM_ROW * sizeof *work->rows);
+        work->place[job->rows++] = (uint32_t)k;
+        p.count++;
+        if (d > p.deepest) {
+            p.deepest = d;
+            p.place = (uint32_t)k;
         }
-        if (job->attached[place] > 0 && d > remembers) {
+        if (job->attached[k] > 0 && d > remembers) {
             remembers = d;
-            memory = place;
+            p.memory = (uint32_t)k;
+            some = true;
         }
     }
-    for (size_t k = first; k < first + count; k++)
-        work->beside[work->member[k]] = most;
-    if (count)
-        work->patches[job->patches++] = (dem_soft_patch){.begin = (uint32_t)first,
-                                                         .count = (uint32_t)count,
-                                                         .place = deepest,
-                                                         .memory = memory,
-                                                         .deepest = most};
+    if (!some)
+        p.memory = p.place;
+    if (p.count && (some || p.deepest > -DEM_SOFT_REACH * job->w->soft.tau))
+        work->patches[job->patches++] = p;
 }
 
-// the normals to group by: of the deepest pair that is in no group yet, and so on
+// a place that is not in use
+static void forget(const soft_job *job, size_t k)
+{
+    job->attached[k] = 0;
+    for (int i = 0; i < KEPT; i++)
+        if (job->kept[i])
+            job->kept[i][k] = 0;
+}
+
+// the normals to group by: of the deepest contact that is in no group yet, and so on
 static void make_groups(soft_job *job, size_t begin, size_t end)
 {
     dem_soft_leaders leaders = {.count = 0};
@@ -186,92 +158,34 @@ static void make_groups(soft_job *job, size_t begin, size_t end)
             leaders.normal[leaders.count++] = normal;
     }
     for (int group = -1; group < leaders.count; group++)
-        make_patch(job, begin, end, &leaders, group);
+        make_group(job, begin, end, &leaders, group);
+    for (size_t k = begin; k < end && !job->records; k++)
+        if (!(job->work->overlap[k] > DEM_SOFT_APART))
+            forget(job, k);
 }
 
-static void find_patches(soft_job *job)
+static void find_groups(soft_job *job)
 {
-    for (size_t begin = 0, end; begin < job->pairs; begin = end) {
-        end = same_bodies(job, begin);
-        if (job->form == DEM_FORM_MESH)
-            make_groups(job, begin, end);
-        else
-            make_patch(job, begin, end, NULL, 0);
-    }
+    const dem_soft_runs *runs = &job->contacts->runs[job->s - job->contacts->segments];
+    for (size_t r = 0; r < runs->count; r++)
+        make_groups(job, runs->first[r], runs->first[r + 1]);
 }
 
-// S and its slope: the weights become the one, the overlaps the other
-static void take_exponentials(soft_job *job)
+// by their number of pairs
+static void sort_patches(const soft_job *job)
 {
-    dem_soft_work *work = job->work;
-    wide per_tau = wide_all(1 / job->w->soft.tau);
-    for (size_t k = 0; k < job->pairs; k += DEM_WIDTH) {
-        wide overlap = wide_load(work->overlap + k), value, slope;
-        soft_window(overlap * per_tau, &value, &slope);
-        wide e = wide_load(work->weight + k) * wide_exp((overlap - wide_load(work->beside + k)) * per_tau);
-        wide_store(work->weight + k, e * value);
-        wide_store(work->overlap + k, e * slope);
+    enum { BINS = 64 };
+    uint32_t start[BINS + 1] = {0};
+    const dem_soft_patch *p = job->work->patches;
+    for (size_t i = 0; i < job->patches; i++)
+        start[p[i].count < BINS ? p[i].count : BINS]++;
+    for (uint32_t i = 0, sum = 0; i <= BINS; i++) {
+        uint32_t here = start[i];
+        start[i] = sum;
+        sum += here;
     }
-}
-
-// all that count remember the same at a mesh, whose contacts may change places; else the deepest pair remembers
-static void remember(const soft_job *job, const dem_soft_patch *p, const double (*kept)[DEM_BLOCK_LANES], size_t lane)
-{
-    bool all = job->form == DEM_FORM_MESH, touches = p->depth > 0;
-    if (p->memory != DEM_SOFT_NONE)
-        job->attached[p->memory] = 0;
-    for (uint32_t i = 0; i < (all ? p->count : 1); i++) {
-        size_t place = all ? job->work->place[job->work->member[p->begin + i]] : p->place;
-        job->attached[place] = touches;
-        for (int k = 0; k < KEPT && touches; k++)
-            if (job->kept[k])
-                job->kept[k][place] = kept[k][lane];
-    }
-}
-
-// D of the patch; false: it neither touches nor remembers
-static bool find_depth(const soft_job *job, dem_soft_patch *p)
-{
-    const dem_soft_work *work = job->work;
-    double tau = job->w->soft.tau, sum = 0;
-    p->depth = -DEM_SOFT_REACH * tau;
-    if (!(p->deepest > p->depth)) {
-        if (p->memory != DEM_SOFT_NONE && !job->records)
-            remember(job, p, NULL, 0);  // far apart at once: what it remembers is of none
-        return false;
-    }
-    for (uint32_t k = 0; k < p->count; k++)
-        sum += work->weight[work->member[p->begin + k]];
-    p->sum = sum;
-    // log S <= S - 1
-    if (sum > 0 && (p->deepest / tau + sum > 1 || p->memory != DEM_SOFT_NONE))
-        p->depth = larger(p->depth, p->deepest + tau * log(sum));
-    return p->depth > 0 || p->memory != DEM_SOFT_NONE;
-}
-
-// lists the patches that act, sorted by their number of pairs
-static void find_acting(soft_job *job)
-{
-    enum { BINS = 32 };
-    dem_soft_work *work = job->work;
-    size_t start[BINS + 2] = {0};
-    for (size_t i = 0; i < job->patches; i++) {
-        dem_soft_patch *p = &work->patches[i];
-        if (!find_depth(job, p))
-            continue;
-        for (uint32_t k = 0; k < p->count; k++) {
-            uint32_t pair = work->member[p->begin + k];
-            work->rows[DEM_ROW * (size_t)pair + ROW_SHARE] = work->overlap[pair];
-        }
-        work->patches[job->acting++] = *p;
-        start[1 + (p->count < BINS ? p->count : BINS)]++;
-    }
-    for (size_t i = 1; i <= BINS; i++)
-        start[i] += start[i - 1];
-    for (size_t i = 0; i < job->acting; i++) {
-        uint32_t count = work->patches[i].count;
-        work->sorted[start[count < BINS ? count : BINS]++] = (uint32_t)i;
-    }
+    for (size_t i = 0; i < job->patches; i++)
+        job->work->sorted[start[p[i].count < BINS ? p[i].count : BINS]++] = (uint32_t)i;
 }
 
 // ---- eight patches
@@ -282,7 +196,8 @@ typedef struct soft_eight {
     size_t count;
     uint32_t a[DEM_BLOCK_LANES], b[DEM_BLOCK_LANES], law[DEM_BLOCK_LANES], shift[DEM_BLOCK_LANES];
     uint32_t first[DEM_BLOCK_LANES], members[DEM_BLOCK_LANES];
-    double sum[DEM_BLOCK_LANES], depth[DEM_BLOCK_LANES], radius[2][DEM_BLOCK_LANES];
+    bool remembers[DEM_BLOCK_LANES];
+    double sum[DEM_BLOCK_LANES], deepest[DEM_BLOCK_LANES], depth[DEM_BLOCK_LANES], radius[2][DEM_BLOCK_LANES];
     double kept[KEPT][DEM_BLOCK_LANES];
     double momentum[2][DEM_BLOCK_LANES][DEM_ROW] __attribute__((aligned(64)));
     double force[3][DEM_BLOCK_LANES], hardness[DEM_BLOCK_LANES];
@@ -298,14 +213,12 @@ static void fill_lane(const soft_job *job, soft_eight *e, size_t i)
     e->b[i] = wall ? c->sphere_b[at] : c->b[at];
     e->law[i] = c->law ? c->law[at] : 0;
     e->shift[i] = c->shift ? c->shift[at] : 0;
-    e->first[i] = p->begin;
+    e->first[i] = p->row;
     e->members[i] = p->count;
-    e->sum[i] = p->sum;
-    e->depth[i] = p->depth;
+    e->deepest[i] = p->deepest;
+    e->remembers[i] = job->attached[p->memory] > 0;
     e->radius[0][i] = job->w->soft.radius[e->a[i]];
     e->radius[1][i] = wall ? e->radius[0][i] : job->w->soft.radius[e->b[i]];
-    for (int k = 0; k < KEPT; k++)
-        e->kept[k][i] = job->kept[k] && p->memory != DEM_SOFT_NONE ? job->kept[k][p->memory] : 0;
 }
 
 // a lane without a patch: dummies, or the wall behind the last
@@ -314,11 +227,33 @@ static void fill_idle(const soft_job *job, soft_eight *e, size_t i)
     e->a[i] = job->w->bodies.dummy;
     e->b[i] = job->form < 0 ? e->a[i] + 1 : (uint32_t)job->w->walls.count;
     e->law[i] = e->shift[i] = e->first[i] = e->members[i] = 0;
-    e->sum[i] = 0;
-    e->depth[i] = -DEM_SOFT_REACH * job->w->soft.tau;
+    e->remembers[i] = false;
+    e->deepest[i] = -DEM_SOFT_REACH * job->w->soft.tau;
     e->radius[0][i] = e->radius[1][i] = 1;
-    for (int k = 0; k < KEPT; k++)
-        e->kept[k][i] = 0;
+}
+
+// what contacts remember that do not touch is 0
+static void fill_kept(const soft_job *job, soft_eight *e)
+{
+    for (int k = 0; k < KEPT; k++) {
+        const double *from = job->kept[k];
+        for (size_t i = 0; i < DEM_BLOCK_LANES; i++)
+            e->kept[k][i] = from && i < e->count ? from[e->p[i]->memory] : 0;
+    }
+}
+
+// all of a group remember the same at a mesh, whose contacts may change places
+static void remember(const soft_job *job, const soft_eight *e, size_t i)
+{
+    const dem_soft_patch *p = e->p[i];
+    bool mesh = job->form == DEM_FORM_MESH;
+    for (uint32_t m = 0; m < (mesh ? p->count : 1); m++) {
+        size_t place = mesh ? job->work->place[p->row + m] : p->place;
+        job->attached[place] = e->depth[i] > 0;
+        for (int k = 0; k < KEPT; k++)
+            if (job->kept[k])
+                job->kept[k][place] = e->kept[k][i];
+    }
 }
 
 DEM_INLINE soft_lanes load_lanes(const dem_features f, const soft_job *job, const soft_eight *e, size_t l)
@@ -328,8 +263,8 @@ DEM_INLINE soft_lanes load_lanes(const dem_features f, const soft_job *job, cons
     rows_load(rows.bodies, DEM_BODY_ROW, e->a + l, pose);
     soft_lanes p = {.first = e->first + l,
                     .count = e->members + l,
-                    .sum = wide_load(e->sum + l),
-                    .depth = wide_load(e->depth + l),
+                    .deepest = wide_load(e->deepest + l),
+                    .tau = job->w->soft.tau,
                     .between = {zero, zero, zero}};
     p.a = side_of(&rows, e->a + l, pose);
     if (job->form < 0) {
@@ -344,13 +279,17 @@ DEM_INLINE soft_lanes load_lanes(const dem_features f, const soft_job *job, cons
         return p;
     }
     // as a body that nothing moves, whose velocity is told where the centre of a is
-    p.b = (soft_side){.velocity = {zero, zero, zero}, .spin = {zero, zero, zero}, .inverse_mass = zero,
-                      .inverse = {zero, zero, zero, zero, zero, zero}, .brisk = zero, .quick = zero};
+    p.b = (soft_side){.velocity = {zero, zero, zero},
+                      .spin = {zero, zero, zero},
+                      .inverse_mass = zero,
+                      .inverse = {zero, zero, zero, zero, zero, zero},
+                      .brisk = zero,
+                      .quick = zero};
     if (f.moving) {
         rows_load(rows.walls + 8, DEM_WALL_ROW, e->b + l, other);
         p.b.spin = (wide3){other[3], other[4], other[5]};
-        p.b.velocity = plus3((wide3){other[0], other[1], other[2]},
-                             cross3(p.b.spin, (wide3){pose[0], pose[1], pose[2]}));
+        p.b.velocity =
+            plus3((wide3){other[0], other[1], other[2]}, cross3(p.b.spin, (wide3){pose[0], pose[1], pose[2]}));
     }
     return p;
 }
@@ -380,7 +319,7 @@ DEM_INLINE wide3 kept3(const soft_eight *e, int k, size_t l)
     return (wide3){wide_load(e->kept[k] + l), wide_load(e->kept[k + 1] + l), wide_load(e->kept[k + 2] + l)};
 }
 
-static void keep_memory(soft_eight *e, size_t l, const soft_memory *m)
+DEM_INLINE void keep_memory(soft_eight *e, size_t l, const soft_memory *m)
 {
     const wide kept[KEPT] = {m->spring.x, m->spring.y, m->spring.z, m->dash.x, m->dash.y,
                              m->dash.z,   m->twist,    m->patch,    m->loss};
@@ -388,16 +327,31 @@ static void keep_memory(soft_eight *e, size_t l, const soft_memory *m)
         wide_store(e->kept[k] + l, kept[k]);
 }
 
-static void put_momentum(soft_eight *e, size_t l, int side, wide3 force, wide3 moment, double kick, wide strain)
+DEM_INLINE void put_momentum(soft_eight *e, size_t l, int side, wide3 force, wide3 moment, double kick, wide strain)
 {
     wide by = wide_all(kick);
-    wide row[8] = {force.x * by, force.y * by, force.z * by, moment.x * by, moment.y * by, moment.z * by, strain, wide_all(0)};
+    wide row[8] = {force.x * by,  force.y * by,  force.z * by, moment.x * by,
+                   moment.y * by, moment.z * by, strain,       wide_all(0)};
     rows_store_next(e->momentum[side][l], DEM_ROW, row);
 }
 
 // lanes that are written down
-enum { TOLD_NORMAL, TOLD_A = 3, TOLD_B = 6, TOLD_FORCE = 9, TOLD_TURNING = 12, TOLD_OVERLAP = 15, TOLD_NET, TOLD_ELASTIC,
-       TOLD_SLIDE, TOLD_TURN, TOLD_FRICTION, TOLD_VISCOUS, TOLD_POWER, TOLD };
+enum {
+    TOLD_NORMAL,
+    TOLD_A = 3,
+    TOLD_B = 6,
+    TOLD_FORCE = 9,
+    TOLD_TURNING = 12,
+    TOLD_OVERLAP = 15,
+    TOLD_NET,
+    TOLD_ELASTIC,
+    TOLD_SLIDE,
+    TOLD_TURN,
+    TOLD_FRICTION,
+    TOLD_VISCOUS,
+    TOLD_POWER,
+    TOLD
+};
 
 static void put_records(const soft_job *job, const soft_eight *e, size_t l, const soft_lanes *p, const soft_whole *s,
                         const soft_result *r, wide power)
@@ -405,8 +359,8 @@ static void put_records(const soft_job *job, const soft_eight *e, size_t l, cons
     double told[TOLD][DEM_WIDTH];
     wide3 from_b = minus3(s->point, p->between), turning = minus3(r->moment, cross3(s->point, r->force));
     const wide3 vectors[] = {s->n, s->point, from_b, r->force, turning};
-    const wide numbers[] = {s->depth, r->net * s->along, r->elastic_normal, r->elastic_slide, r->elastic_turn,
-                            r->lost_friction, r->lost_viscous, power};
+    const wide numbers[] = {s->depth,        r->net * s->along, r->elastic_normal, r->elastic_slide,
+                            r->elastic_turn, r->lost_friction,  r->lost_viscous,   power};
     for (int k = 0; k < 5; k++) {
         wide_store(told[3 * k], vectors[k].x);
         wide_store(told[3 * k + 1], vectors[k].y);
@@ -437,12 +391,31 @@ static void put_records(const soft_job *job, const soft_eight *e, size_t l, cons
     }
 }
 
+// D of the patches; false: none of them touches or remembers
+static bool find_depths(const soft_job *job, soft_eight *e, size_t l)
+{
+    double tau = job->w->soft.tau;
+    bool some = false;
+    for (size_t i = l; i < l + DEM_WIDTH; i++) {
+        double sum = e->sum[i], deepest = e->deepest[i];
+        e->depth[i] = -DEM_SOFT_REACH * tau;
+        // log S <= S - 1
+        if (sum > 0 && (e->remembers[i] || deepest / tau + sum > 1))
+            e->depth[i] = larger(e->depth[i], deepest + tau * log(sum));
+        some |= e->depth[i] > 0 || e->remembers[i];
+    }
+    return some;
+}
+
 DEM_INLINE void act_lanes(const dem_features f, soft_job *job, soft_eight *e, size_t l)
 {
     soft_lanes p = load_lanes(f, job, e, l);
+    soft_sums sums = soft_sum(f, &p, job->work->rows, (uint32_t)job->size);
+    wide_store(e->sum + l, sums.s);
+    if (!find_depths(job, e, l))
+        return;
     soft_spot spot = load_spot(f, job, e, l);
-    soft_sums sums = soft_sum(f, &p, job->work->rows, job->work->member, (uint32_t)job->pairs);
-    soft_whole s = soft_whole_of(&p, &sums);
+    soft_whole s = soft_whole_of(&p, &sums, wide_load(e->depth + l));
     soft_memory m = {kept3(e, 0, l), kept3(e, 3, l), wide_load(e->kept[6] + l), wide_load(e->kept[7] + l),
                      wide_load(e->kept[8] + l)};
     soft_result r = soft_act(f, &spot, &p, &s, &m);
@@ -483,18 +456,21 @@ DEM_INLINE void act_eight(const dem_features f, soft_job *job, size_t from)
     const dem_contact_columns *c = &job->contacts->columns;
     double *momentum = job->w->bodies.momentum;
     soft_eight e;
-    e.count = job->acting - from < DEM_BLOCK_LANES ? job->acting - from : DEM_BLOCK_LANES;
+    e.count = job->patches - from < DEM_BLOCK_LANES ? job->patches - from : DEM_BLOCK_LANES;
     for (size_t i = 0; i < e.count; i++) {
         e.p[i] = &job->work->patches[job->work->sorted[from + i]];
         fill_lane(job, &e, i);
     }
     for (size_t i = e.count; i < DEM_BLOCK_LANES; i++)
         fill_idle(job, &e, i);
+    fill_kept(job, &e);
     for (size_t l = 0; l < e.count; l += DEM_WIDTH)
         act_lanes(f, job, &e, l);
     for (size_t i = 0; i < e.count && !job->records; i++) {
         size_t at = job->s->begin + e.p[i]->place;
-        remember(job, e.p[i], e.kept, i);
+        if (!(e.depth[i] > 0 || e.remembers[i]))
+            continue;
+        remember(job, &e, i);
         push(momentum + DEM_ROW * (size_t)e.a[i], e.momentum[0][i]);
         if (job->form < 0)
             push(momentum + DEM_ROW * (size_t)c->target[at], e.momentum[1][i]);
@@ -534,19 +510,21 @@ static void segment(dem_world *w, size_t which, int form, double kick, dem_soft_
                     .tally = records ? &scratch : tally,
                     .records = records};
     list_kept(&job);
+    job.size = s->end - s->begin;
     const dem_features geometry = {.offset = true, .scaled = true},
                        images = {.offset = true, .scaled = true, .periodic = true};
     if (f.periodic)
-        find_near(images, &job);
+        measure(images, &job);
     else
-        find_near(geometry, &job);
-    find_weights(&job);
-    find_patches(&job);
-    take_exponentials(&job);
+        measure(geometry, &job);
+    if (form == DEM_FORM_MESH)
+        find_groups(&job);
+    else
+        find_patches(&job);
+    sort_patches(&job);
     if (f.reaction && form >= 0 && !records)
         clear_reactions(&job);
-    find_acting(&job);
-    for (size_t from = 0; from < job.acting; from += DEM_BLOCK_LANES)
+    for (size_t from = 0; from < job.patches; from += DEM_BLOCK_LANES)
         act_eight(f, &job, from);
 }
 

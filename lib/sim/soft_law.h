@@ -1,5 +1,5 @@
-/// What soft patches do by the laws of the scene, for soft_kernels.c. The laws are those of single contacts, with a patch
-/// in each lane.
+/// What soft patches do by the laws of the scene, for soft_kernels.c. The laws are those of single contacts, with a
+/// patch in each lane.
 #ifndef DEM_SIM_SOFT_LAW_H
 #define DEM_SIM_SOFT_LAW_H
 
@@ -74,7 +74,8 @@ DEM_INLINE wide dashpot(const dem_features f, const wide *law, wide stiffness, w
 }
 
 // the dashpot of a patch against what the speeds of its pairs differ by
-DEM_INLINE wide uneven_damping(const dem_features f, const soft_spot *spot, const soft_dashpots *d, wide inverse, wide net)
+DEM_INLINE wide uneven_damping(const dem_features f, const soft_spot *spot, const soft_dashpots *d, wide inverse,
+                               wide net)
 {
     wide c = dashpot(f, spot->law, d->stiffness, d->mass), zero = wide_all(0), one = wide_all(1);
     // fades as the tail of the whole is cut, so that there is no jump
@@ -84,8 +85,8 @@ DEM_INLINE wide uneven_damping(const dem_features f, const soft_spot *spot, cons
 
 // the spring and the dashpot against twisting: k_t and c_t times the square of the radius of gyration, capped by the
 // points' mean arm
-DEM_INLINE wide twist(const dem_features f, const soft_spot *spot, const soft_whole *p, const soft_dashpots *d, wide cap,
-                      wide rate, soft_memory *m, soft_result *out)
+DEM_INLINE wide twist(const dem_features f, const soft_spot *spot, const soft_whole *p, const soft_dashpots *d,
+                      wide cap, wide rate, soft_memory *m, soft_result *out)
 {
     wide zero = wide_all(0), step = wide_all(spot->last_step);
     wide square = wide_or_zero(wide_less(zero, p->depth), p->gyration * p->gyration), stiffness = d->slide * square;
@@ -190,8 +191,8 @@ DEM_INLINE soft_result soft_act(const dem_features f, const soft_spot *spot, con
         out.strain_b = soft_strain(spot, &p->b, s, &d, per_tau, s->share_b, s->spread_b);
     }
     if (f.reaction)
-        out.hardness = wide_or_zero(on, wide_fma(dashpot(f, spot->law, d.stiffness, d.mass),
-                                                 wide_all(1 / step), d.stiffness));
+        out.hardness =
+            wide_or_zero(on, wide_fma(dashpot(f, spot->law, d.stiffness, d.mass), wide_all(1 / step), d.stiffness));
     return out;
 }
 

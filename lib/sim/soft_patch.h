@@ -1,14 +1,14 @@
-/// Patches of soft contacts, one in each lane, for soft_kernels.c: sums over their pairs of spheres, and what the patch is
-/// as a whole.
+/// Patches of soft contacts, one in each lane, for soft_kernels.c: sums over their pairs of spheres, and what the patch
+/// is as a whole.
 ///
-/// The rows of the pairs hold: overlap, normal (out of a), point from the centre of a, share of the sums.
+/// The rows of the pairs hold: overlap, normal (out of a), point from the centre of a, weight.
 #ifndef DEM_SIM_SOFT_PATCH_H
 #define DEM_SIM_SOFT_PATCH_H
 
 #include "sim/contact_geometry.h"
 #include "sim/soft.h"
 
-enum { ROW_OVERLAP, ROW_NORMAL, ROW_ARM = 4, ROW_SHARE = 7 };
+enum { ROW_OVERLAP, ROW_NORMAL, ROW_ARM = 4, ROW_WEIGHT = 7 };
 
 /// Farther apart than anything: the row of no pair.
 #define DEM_SOFT_APART (-1e30)
@@ -76,33 +76,37 @@ DEM_INLINE void soft_window(wide u, wide *value, wide *slope)
 /// DEM_WIDTH patches that are summed up side by side.
 typedef struct soft_lanes {
     soft_side a, b;
-    wide3 between;                 // from the centre of a to that of b; of walls 0
-    const uint32_t *first, *count; // their members
-    wide sum, depth;               // S over e^(deepest / tau), D [m]
+    wide3 between;                  // from the centre of a to that of b; of walls 0
+    const uint32_t *first, *count;  // their rows
+    wide deepest;                   // overlap [m]
+    double tau;                     // [m]
 } soft_lanes;
 
-/// What is summed over the pairs, e being the share: the weight times the slope of s.
+/// What is summed over the pairs, e being the weight times the slope of s.
 typedef struct soft_sums {
-    wide e, v, vv, xx;             // e, e v, e v^2, e r^2; v: speed of separation
-    wide3 n, t, nv, tv, x;         // e n, e r x n, e v n, e v r x n, e r
-    wide spread_a, spread_b;       // e J M^-1 J of a, and of b
+    wide s;                   // S over e^(deepest / tau)
+    wide e, v, vv, xx;        // e, e v, e v^2, e r^2; v: speed of separation
+    wide3 n, t, nv, tv, x;    // e n, e r x n, e v n, e v r x n, e r
+    wide spread_a, spread_b;  // e J M^-1 J of a, and of b
 } soft_sums;
 
-DEM_INLINE soft_sums soft_sum(const dem_features f, const soft_lanes *p, const double *rows, const uint32_t *members,
-                              uint32_t none)
+DEM_INLINE soft_sums soft_sum(const dem_features f, const soft_lanes *p, const double *rows, uint32_t none)
 {
-    wide zero = wide_all(0);
+    wide zero = wide_all(0), per_tau = wide_all(1 / p->tau);
     wide3 none3 = {zero, zero, zero}, over = minus3(p->b.velocity, p->a.velocity);
-    soft_sums s = {zero, zero, zero, zero, none3, none3, none3, none3, none3, zero, zero};
+    soft_sums s = {zero, zero, zero, zero, zero, none3, none3, none3, none3, none3, zero, zero};
     uint32_t most = 0, row[DEM_WIDTH];
     for (size_t l = 0; l < DEM_WIDTH; l++)
         most = p->count[l] > most ? p->count[l] : most;
     for (uint32_t k = 0; k < most; k++) {
         for (size_t l = 0; l < DEM_WIDTH; l++)
-            row[l] = k < p->count[l] ? members[p->first[l] + k] : none;
-        wide m[8];
+            row[l] = k < p->count[l] ? p->first[l] + k : none;
+        wide m[8], value, slope;
         rows_load(rows, DEM_ROW, row, m);
-        wide e = m[ROW_SHARE];
+        soft_window(m[ROW_OVERLAP] * per_tau, &value, &slope);
+        wide e = m[ROW_WEIGHT] * wide_exp((m[ROW_OVERLAP] - p->deepest) * per_tau);
+        s.s = wide_fma(e, value, s.s);
+        e = e * slope;
         wide3 n = {m[ROW_NORMAL], m[ROW_NORMAL + 1], m[ROW_NORMAL + 2]};
         wide3 r = {m[ROW_ARM], m[ROW_ARM + 1], m[ROW_ARM + 2]}, t = cross3(r, n);
         wide3 tb = minus3(t, cross3(p->between, n));
@@ -127,25 +131,25 @@ DEM_INLINE soft_sums soft_sum(const dem_features f, const soft_lanes *p, const d
 
 /// Patches as a whole.
 typedef struct soft_whole {
-    wide depth;               // D [m]
-    wide3 n;                  // unit, out of a
-    wide along;               // |sum omega n|: how much of the force goes along n
-    wide3 normal, turn;       // sum omega n, r x n for a
-    wide speed;               // of separation, - dD/dt [m/s]
+    wide depth;                 // D [m]
+    wide3 n;                    // unit, out of a
+    wide along;                 // |sum omega n|: how much of the force goes along n
+    wide3 normal, turn;         // sum omega n, r x n for a
+    wide speed;                 // of separation, - dD/dt [m/s]
     wide3 uneven, uneven_turn;  // sum omega (v - mean) n, r x n
-    wide uneven_power;        // sum omega (v - mean)^2 [m^2/s^2] (ledger)
-    wide3 point;              // mean contact point from the centre of a [m]
-    wide gyration;            // radius of gyration of the points [m]
-    wide share_a, share_b;    // 1 / mass along D, of each [1/kg]
-    wide spread_a, spread_b;  // mean over the pairs of their own 1 / mass [1/kg] (watch)
+    wide uneven_power;          // sum omega (v - mean)^2 [m^2/s^2] (ledger)
+    wide3 point;                // mean contact point from the centre of a [m]
+    wide gyration;              // radius of gyration of the points [m]
+    wide share_a, share_b;      // 1 / mass along D, of each [1/kg]
+    wide spread_a, spread_b;    // mean over the pairs of their own 1 / mass [1/kg] (watch)
 } soft_whole;
 
-DEM_INLINE soft_whole soft_whole_of(const soft_lanes *p, const soft_sums *s)
+DEM_INLINE soft_whole soft_whole_of(const soft_lanes *p, const soft_sums *s, wide depth)
 {
     wide zero = wide_all(0), one = wide_all(1);
-    wide per = wide_or_zero(wide_less(zero, p->sum), one / p->sum), per_e = wide_or_zero(wide_less(zero, s->e), one / s->e);
+    wide per = wide_or_zero(wide_less(zero, s->s), one / s->s), per_e = wide_or_zero(wide_less(zero, s->e), one / s->e);
     wide mean = s->v * per_e, back = zero - mean;
-    soft_whole w = {.depth = p->depth, .normal = scale3(s->n, per), .turn = scale3(s->t, per)};
+    soft_whole w = {.depth = depth, .normal = scale3(s->n, per), .turn = scale3(s->t, per)};
     wide3 turn_b = minus3(w.turn, cross3(p->between, w.normal));
     wide square = dot3(w.normal, w.normal);
     w.along = wide_sqrt(square);

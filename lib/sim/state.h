@@ -90,7 +90,7 @@ typedef struct dem_segment {
     size_t begin, end, capacity;                   ///< multiples of 8
     size_t slot_begin, slot_count, slot_capacity;  ///< momenta for bodies of other domains
     size_t across;  ///< blocks that neighbours in the list are dealt to
-    bool dirty;
+    bool dirty, fresh;  ///< fresh: the list has changed, and runs are not known yet (soft)
 } dem_segment;
 
 typedef struct dem_contacts {
@@ -99,6 +99,7 @@ typedef struct dem_contacts {
     dem_segment *segments;
     uint32_t *slot_body;  ///< [slots] whose momentum a slot belongs to
     size_t slot_capacity;
+    dem_soft_runs *runs;  ///< [segments] (soft)
 } dem_contacts;
 
 /// Sphere pairs that a refresh has found, by thread.
@@ -255,6 +256,7 @@ static inline void segment_set_end(dem_segment *s, size_t count, bool soft)
 {
     s->end = s->begin + count;
     s->across = soft ? 1 : count / DEM_BLOCK_LANES;
+    s->fresh = true;
 }
 
 static inline double *body_pose(const dem_bodies *b, size_t row)
