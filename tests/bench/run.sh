@@ -223,16 +223,17 @@ gas() {
     time_row "$1" 8 s.json 1 500
 }
 
-# equal masses of each size between the largest and a share of it, shaken together by a strong weight
+# sizes NAME RATIO COUNT WIDTH HEIGHT WEIGHT STEPS: sizes down to a share of 40 mm, half of the mass below the middle of
+# the logarithms, brought to rest by a strong weight
 sizes() {
     young=1e8
     law='"normal": { "stiffness_from": "young", "restitution": 0.5 }, "friction": { "coefficient": 0.5 }'
-    mix=$(calc "\"\\042size\\042: { \\042law\\042: \\042table\\042, \\042sizes\\042: [\" 0.04 / $2 \", 0.04], \\042passing\\042: [0, 1], \\042by\\042: \\042number\\042 }\"")
+    size='"size": { "law": "table", "sizes": ['$(calc "0.04 / $2 \", \" 0.04 / sqrt($2)")', 0.04], "passing": [0, 0.5, 1], "by": "mass" }'
     old=$step
     step='"auto"'
-    write_scene s.json "$(shape_of ellipsoid 8)" "$(fill "$3" "0, 0, 0" "$4" ", $mix")" "$(box "${4%%,*}" "${4%%,*}")" "$law" "" "$5"
-    settle s.json sizes "$6"
-    write_scene s.json "$(shape_of ellipsoid 8)" '{ "file": "sizes.csv" }' "$(box "${4%%,*}" "${4%%,*}")" "$law" "" "$5"
+    write_scene s.json "$(shape_of ellipsoid 8)" "$(fill "$3" "0, 0, 0" "$4, $4, $5" ", $size")" "$(box "$4" "$4")" "$law" "" "$6"
+    settle s.json sizes "$7"
+    write_scene s.json "$(shape_of ellipsoid 8)" '{ "file": "sizes.csv" }' "$(box "$4" "$4")" "$law" "" "$6"
     young=
     time_row "$1" 8 s.json
     step=$old
@@ -330,8 +331,8 @@ row "scanned grain, 50 spheres" scanned worn-50
 if [ -z "$quick" ]; then
     row "settling k=50" settling 50
     row "scanned grain, 200 spheres" scanned worn-200
-    row "sizes 1 : 10" sizes 10 3000 "0.1, 0.1, 0.2" -1000 15000
-    row "sizes 1 : 100" sizes 100 3000 "0.1, 0.1, 0.2" -10000 30000
+    row "sizes 1 : 10" sizes 10 3000 0.12 0.4 -1000 12000
+    row "sizes 1 : 100" sizes 100 10000 0.08 0.15 -10000 12000
     row "dense k=8" large_dense 1
     row "dense k=8, 2 threads" large_dense 2
     row "endless bed k=8" sweep 1 1
