@@ -11,8 +11,8 @@ enum { PAIRS_TO_SHARE = 256 };  // expired pairs that are worth more than one th
 
 static const double HORIZON = 80;                             // steps that a margin should last
 static const double MARGIN_LEAST = 0.01, MARGIN_MOST = 0.15;  // of the length that suits the shape
-static const double SOFT_SHARE = 0.5;  // of what soft contacts look ahead, at least: they have many pairs of spheres to look at
 static const double REACH_SHARE = 0.4;                        // of the bounding radius, that length at least
+static const double SOFT_SHARE = 0.5;                         // of what soft contacts look ahead, at least: found by trial
 static const float HEIGHT_ERROR = 4e-6f;                      // of the bounding radii: what 32 bits may be off by
 
 static double margin_length(const dem_world *w, size_t row)
