@@ -14,9 +14,11 @@ static void fill_rows(const dem_features f, dem_world *w, const dem_contacts *co
     for (size_t from = s->begin; from < s->end; from += BATCH) {
         size_t count = s->end - from < BATCH ? s->end - from : BATCH;
         for (size_t g = 0; g < count; g += DEM_WIDTH) {
-            if (form < 0)
+            if (form < 0) {
+                pair_first(f, &rows, c, from + g, g, &batch);
+                pair_second(f, &rows, c, from + g, g, &batch);
                 pair_geometry(f, &rows, c, from + g, g, &batch, largest);
-            else
+            } else
                 wall_geometry(f, &rows, c, (dem_wall_form)form, from + g, g, &batch, largest);
             wide row[8];
             double weight[DEM_WIDTH];

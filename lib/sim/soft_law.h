@@ -95,7 +95,7 @@ static inline double twist(const dem_features f, const soft_spot *spot, const so
 }
 
 static inline dem_vec3 soft_slide(const dem_features f, const soft_spot *spot, const soft_patch_data *p,
-                                  const soft_whole *s, const wide *law, normal_law *normal, double mass,
+                                  const soft_whole *s, const wide *law, normal_law *normal, const contact_mass *mass,
                                   dem_contact_history *h, soft_result *out, double *slide, double *slide_damping)
 {
     dem_vec3 from_b = v3_sub(s->point, p->between);
@@ -107,7 +107,7 @@ static inline dem_vec3 soft_slide(const dem_features f, const soft_spot *spot, c
     // the cap is by the force along the mean normal
     normal->force = normal->force * wide_all(s->along);
     friction_law t = friction(f, law, normal, wide_all(spot->reduced), wide_all(s->depth), wide_all(s->speed),
-                              wide_all(mass), spring, all3(slip), wide_all(spot->last_step),
+                              mass, spring, all3(slip), wide_all(spot->last_step),
                               wide_less(wide_all(0), wide_all(s->depth)), wide_less(wide_all(1), wide_all(0)));
     dem_vec3 after = first3(t.spring), dash = first3(t.dash);
     *slide = first_lane(t.stiffness);
@@ -150,12 +150,13 @@ static inline soft_result soft_act(const dem_features f, const soft_spot *spot, 
         law[k] = wide_all(spot->law[k]);
     double inverse = f.local_mass ? s->share_a + s->share_b : p->a->inverse_mass + p->b->inverse_mass;
     inverse = larger(inverse, 1e-300);
-    double mass = 1 / inverse, step = spot->last_step > 0 ? spot->last_step : spot->next_step;
+    contact_mass mass = contact_mass_of(f, wide_all(inverse));
+    double step = spot->last_step > 0 ? spot->last_step : spot->next_step;
     normal_law normal = normal_elastic(f, law, NULL, wide_all(s->depth), wide_all(spot->reduced), wide_all(spot->area));
-    normal_damp(f, law, &normal, wide_all(inverse), wide_all(mass), wide_all(s->depth), wide_all(s->speed),
-                wide_all(spot->last_step), wide_all(1 / step));
+    normal_damp(f, law, &normal, &mass, wide_all(s->depth), wide_all(s->speed), wide_all(spot->last_step),
+                wide_all(1 / step));
     double elastic = first_lane(normal.elastic), stiffness = first_lane(normal.stiffness), slide = 0, slide_damping = 0;
-    double c = uneven_damping(f, spot->law, stiffness, mass, spot->last_step, elastic, first_lane(normal.force));
+    double c = uneven_damping(f, spot->law, stiffness, 1 / inverse, spot->last_step, elastic, first_lane(normal.force));
     out.net = first_lane(normal.force);
     if (!(s->depth > 0))
         elastic = out.net = c = 0;  // the patch has just parted, and lets go of what its springs held
@@ -170,7 +171,7 @@ static inline soft_result soft_act(const dem_features f, const soft_spot *spot, 
     out.force = v3_sub(v3_scale(s->uneven, c), v3_scale(s->normal, out.net));
     out.moment = v3_sub(v3_scale(s->uneven_turn, c), v3_scale(s->turn, out.net));
     if (f.friction) {
-        dem_vec3 drag = soft_slide(f, spot, p, s, law, &normal, mass, h, &out, &slide, &slide_damping);
+        dem_vec3 drag = soft_slide(f, spot, p, s, law, &normal, &mass, h, &out, &slide, &slide_damping);
         double cap = spot->law[LAW_FRICTION] * fabs(out.net) * s->along;
         double rate = v3_dot(v3_sub(p->b->spin, p->a->spin), s->n);
         double turning = twist(f, spot, s, slide, slide_damping, cap, rate, h, &out);
