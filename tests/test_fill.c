@@ -151,10 +151,10 @@ static void what_is_there_stays_clear(void **state)
     free(before.bodies);
 }
 
-static double from_sphere(void *user, dem_vec3 centre, double radius)
+static double from_sphere(void *user, dem_vec3 centre, double radius, double most)
 {
     const dem_ball *b = user;
-    return b->radius - v3_distance(centre, b->centre) - radius;
+    return fmin(most, b->radius - v3_distance(centre, b->centre) - radius);
 }
 
 static void walls_are_not_crossed(void **state)

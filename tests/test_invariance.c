@@ -32,7 +32,23 @@ static outcome run(const model *m, uint64_t steps)
     return o;
 }
 
-typedef enum law_kind { ELASTIC, LINEAR_ALL, HERTZ_ALL, LINEAR_MOMENTS, HERTZ_MOMENTS, LAW_KINDS } law_kind;
+typedef enum law_kind {
+    ELASTIC,
+    LINEAR_ALL,
+    HERTZ_ALL,
+    LINEAR_MOMENTS,
+    HERTZ_MOMENTS,
+    STATIC,
+    BREAKABLE,
+    JKR_BOUNDED,
+    BUILT_IN,
+    PLUGIN = BUILT_IN,  // a law of the user's, where such can be loaded
+    LAW_KINDS = BUILT_IN + DEM_PLUGINS
+} law_kind;
+
+// stiffness in loading and unloading, of tangential over normal stiffness, friction
+static const dem_law_value PLUGIN_VALUES[] = {{"loading", 1e4}, {"unloading", 1.6e4}, {"friction", 0.4}};
+enum { PLUGIN_VALUE_COUNT = 3 };
 
 static dem_pair_law law_of(law_kind kind)
 {
@@ -40,6 +56,13 @@ static dem_pair_law law_of(law_kind kind)
     law.stiffness = 1e4;
     if (kind == ELASTIC)
         return law;
+    if (kind == PLUGIN) {
+        law.normal = DEM_NORMAL_PLUGIN;
+        law.plugin = PLUGIN_DIR "law_walton_braun.so";
+        law.parameters = PLUGIN_VALUES;
+        law.parameter_count = PLUGIN_VALUE_COUNT;
+        return law;
+    }
     law.damping = DEM_DAMPING_RESTITUTION;
     law.restitution = 0.6;
     law.friction = DEM_FRICTION_LINEAR;
@@ -58,6 +81,25 @@ static dem_pair_law law_of(law_kind kind)
     if (kind == HERTZ_MOMENTS) {
         law.normal = DEM_NORMAL_DMT;
         law.work_of_adhesion = 0.5;
+    }
+    if (kind == STATIC) {
+        law.static_coefficient = 0.7;
+        law.friction_decay = 10;
+    }
+    if (kind == BREAKABLE) {
+        law.cohesion = DEM_COHESION_BREAKABLE;
+        law.bonded = DEM_BONDED_AT_TOUCH;
+        law.bond_tension = 0.5;
+        law.bond_shear = 0.5;
+    }
+    if (kind == JKR_BOUNDED) {
+        law.normal = DEM_NORMAL_JKR;
+        law.friction = DEM_FRICTION_MINDLIN;
+        law.work_of_adhesion = 0.5;
+        law.rolling = DEM_ROLLING_BOUNDED;
+        law.rolling_coefficient = 0.05;
+        law.twisting = DEM_TWISTING_CONSTANT;
+        law.twisting_coefficient = 0.05;
     }
     return law;
 }
@@ -186,7 +228,7 @@ static void a_scene_far_from_the_origin_is_exact_to_the_rounding_there(void **st
         for (size_t i = 0; i < o.count; i++)
             o.position[i] = v3_sub(o.position[i], shift);
         // 3000 roundings of 6e-14 m add up as a random walk to 3e-12 m
-        check_same(&o, &plain, 1e-7);
+        check_same(&o, &plain, kind == PLUGIN ? 3e-7 : 1e-7);  // slips without a dashpot pass more of it on
         model_free(m);
         model_free(far);
     }
@@ -194,7 +236,7 @@ static void a_scene_far_from_the_origin_is_exact_to_the_rounding_there(void **st
 
 // ---- units
 
-// lengths times `s` at the same times: masses s^3, stiffnesses and energies of a surface s^3, moduli s^2
+// lengths times `s` at the same times: masses s^3, stiffnesses and energies of a surface s^3, moduli s^2, forces s^4
 static model *scaled_model(law_kind kind, double s)
 {
     model *m = meeting(kind);
@@ -202,6 +244,16 @@ static model *scaled_model(law_kind kind, double s)
     m->laws[0].stiffness *= s * s * s;
     m->laws[0].work_of_adhesion *= s * s * s;
     m->laws[0].energy_density *= s * s;
+    m->laws[0].friction_decay /= s;
+    m->laws[0].bond_tension *= s * s * s * s;
+    m->laws[0].bond_shear *= s * s * s * s;
+    if (kind == PLUGIN) {
+        static dem_law_value scaled[PLUGIN_VALUE_COUNT];
+        memcpy(scaled, PLUGIN_VALUES, sizeof scaled);
+        for (int i = 0; i < 2; i++)
+            scaled[i].value *= s * s * s;
+        m->laws[0].parameters = s == 1 ? PLUGIN_VALUES : scaled;
+    }
     m->scene.gravity = v3(0, 0, -9.81 * s);
     for (size_t i = 0; i < m->scene.shape_count; i++) {
         m->shapes[i].sphere_radius *= s;
@@ -384,7 +436,8 @@ static void momentum_stays_whatever_the_law_and_wherever_bodies_are_kept(void **
             for (size_t i = 0; i < v.count; i++)
                 scale += v.mass[i] * 2;
             check_vec(p1, p0, 1e-12 * scale);
-            if (!periodic)  // a body that crosses a side takes its angular momentum along
+            // a body that crosses a side takes its angular momentum along; bounded rolling slows each body by itself
+            if (!periodic && kind != JKR_BOUNDED)
                 check_vec(l1, l0, 1e-12 * scale * 0.1);
             dem_world_destroy(w);
             model_free(m);

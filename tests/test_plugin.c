@@ -169,6 +169,53 @@ static void a_plugin_stands_beside_built_in_laws(void **state)
         check_vec(end[0][b], end[1][b], 1e-11);
 }
 
+// twelve pairs of balls that collide: of the plug-in, of the law that is built in, or by turns
+static void collide_pairs(int kinds, dem_vec3 velocity[24])
+{
+    model *m = model_new();
+    m->scene.time.step = 1e-5;
+    m->materials[1] = m->materials[0];
+    m->materials[1].name = "other";
+    m->scene.material_count = 2;
+    // where all is built in, nothing of the plug-in is there
+    m->laws[0] = kinds == 1 ? own_linear() : plugin_law(PLUGIN_DIR "law_smallest.so", NULL, 0);
+    m->laws[1] = m->laws[2] = own_linear();
+    m->laws[1].materials[1] = 1;
+    m->laws[2].materials[0] = m->laws[2].materials[1] = 1;
+    m->scene.law_count = 3;
+    model_sphere(m, R);
+    model_sphere(m, R);
+    m->shapes[1].material = 1;
+    for (int i = 0; i < 12; i++) {
+        uint32_t shape = kinds == 2 ? (uint32_t)(i % 2) : (uint32_t)kinds;
+        for (int side = 0; side < 2; side++) {
+            dem_body_def *b = model_body(m, shape, v3(0.1 * i, 0.0015 * i * side, 0.021 * side));
+            b->velocity = v3(0.1 * i, 0, side ? -1 : 1);
+            b->spin = v3(10, 20 * i, 5);
+        }
+    }
+    dem_world *w = model_world(m, 1);
+    run_steps(w, 600);
+    for (size_t b = 0; b < 24; b++)
+        velocity[b] = velocity_before(w, b);
+    dem_world_destroy(w);
+    model_free(m);
+}
+
+// contacts of both laws share the lanes of one vector
+static void laws_in_neighbouring_lanes_do_not_meet(void **state)
+{
+    (void)state;
+    dem_vec3 apart[2][24], mixed[24];
+    collide_pairs(0, apart[0]);
+    collide_pairs(1, apart[1]);
+    collide_pairs(2, mixed);
+    for (size_t b = 0; b < 24; b++) {
+        check_vec(mixed[b], apart[b / 2 % 2][b], 1e-12);
+        check(v3_norm(v3_sub(apart[0][b], apart[1][b])) > 1e-3);
+    }
+}
+
 static model *user_gas(const char *file)
 {
     model *m = model_new();
@@ -303,6 +350,7 @@ int main(void)
         cmocka_unit_test(walton_and_brauns_law_has_one_restitution_for_all_speeds),
         cmocka_unit_test(a_bridge_holds_beyond_the_touch_and_not_before_it),
         cmocka_unit_test(a_plugin_stands_beside_built_in_laws),
+        cmocka_unit_test(laws_in_neighbouring_lanes_do_not_meet),
         cmocka_unit_test(bits_do_not_depend_on_threads_restarts_and_instruction_sets),
         cmocka_unit_test(an_automatic_step_takes_the_laws_own_stiffness),
         cmocka_unit_test(what_is_no_such_law_is_refused),

@@ -11,7 +11,7 @@ static dem_series *opened(const char *directory, size_t walls, double resume)
 {
     dem_series *series;
     dem_error error;
-    check_ok(dem_series_open(&(dem_series_def){directory, false, VIEW_WALL_DEFS, walls, NULL, 0, false}, resume, &series, &error), error);
+    check_ok(dem_series_open(&(dem_series_def){directory, false, VIEW_WALL_DEFS, walls, NULL, 0, false, false}, resume, &series, &error), error);
     return series;
 }
 
@@ -169,7 +169,7 @@ static void a_table_of_another_scene_is_refused_and_kept(void **state)
     write_rows(series, 0, 3);
     dem_series_close(series);
     dem_buffer before = content(in_folder("other/series.csv"));
-    check(dem_series_open(&(dem_series_def){in_folder("other"), false, VIEW_WALL_DEFS, 1, NULL, 0, false}, 1, &series, &error) == DEM_BAD_INPUT);
+    check(dem_series_open(&(dem_series_def){in_folder("other"), false, VIEW_WALL_DEFS, 1, NULL, 0, false, false}, 1, &series, &error) == DEM_BAD_INPUT);
     check(!series && strstr(error.text, "other columns") && strchr(error.text, ';'));
     dem_buffer after = content(in_folder("other/series.csv"));
     assert_string_equal(before.data, after.data);

@@ -346,7 +346,7 @@ static void momentum_and_angular_momentum_are_kept_to_the_last_bits(void **state
     model_free(m);
 }
 
-static void a_world_without_bodies_steps(void **state)
+static void a_world_without_bodies_steps_and_is_resumed(void **state)
 {
     (void)state;
     model *m = model_new();
@@ -355,7 +355,11 @@ static void a_world_without_bodies_steps(void **state)
     dem_world *w = model_world(m, 2);
     run_steps(w, 10);
     assert_int_equal(measured(w)->bodies, 0);
+    dem_world *resumed = model_resumed(m, w, 1);
     dem_world_destroy(w);
+    run_steps(resumed, 10);
+    assert_int_equal(measured(resumed)->bodies, 0);
+    dem_world_destroy(resumed);
     model_free(m);
 }
 
@@ -413,7 +417,7 @@ int main(void)
         cmocka_unit_test(a_scene_without_friction_has_no_history),
         cmocka_unit_test(explain_tells_what_a_scene_pays_for),
         cmocka_unit_test(momentum_and_angular_momentum_are_kept_to_the_last_bits),
-        cmocka_unit_test(a_world_without_bodies_steps),
+        cmocka_unit_test(a_world_without_bodies_steps_and_is_resumed),
         cmocka_unit_test(a_run_that_blows_up_stops_and_names_body_and_step),
         cmocka_unit_test(a_body_that_leaves_the_domain_stops_the_run),
     };

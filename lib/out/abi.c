@@ -121,7 +121,8 @@ static const dem_abi_row rows[] = {
     FIELD(dem_contact, wall), FIELD(dem_contact, point), FIELD(dem_contact, normal), FIELD(dem_contact, overlap),
     FIELD(dem_contact, normal_force), FIELD(dem_contact, friction_force),
     WHOLE(dem_bond_view),
-    FIELD(dem_bond_view, def), FIELD(dem_bond_view, body), FIELD(dem_bond_view, other), FIELD(dem_bond_view, sphere),
+    FIELD(dem_bond_view, def), FIELD(dem_bond_view, body), FIELD(dem_bond_view, other), FIELD(dem_bond_view, id),
+    FIELD(dem_bond_view, other_id), FIELD(dem_bond_view, sphere),
     FIELD(dem_bond_view, other_sphere), FIELD(dem_bond_view, state), FIELD(dem_bond_view, point),
     FIELD(dem_bond_view, axis), FIELD(dem_bond_view, force), FIELD(dem_bond_view, moment),
     FIELD(dem_bond_view, tensile_stress), FIELD(dem_bond_view, shear_stress), FIELD(dem_bond_view, stress_ratio),
@@ -146,7 +147,7 @@ static const dem_abi_row rows[] = {
     FIELD(dem_figures, contacts), FIELD(dem_figures, wall_contacts), FIELD(dem_figures, coordination),
     FIELD(dem_figures, overlap_ratio), FIELD(dem_figures, largest_overlap_ratio), FIELD(dem_figures, fastest),
     FIELD(dem_figures, centre), FIELD(dem_figures, highest), FIELD(dem_figures, bonds),
-    FIELD(dem_figures, bonds_tension), FIELD(dem_figures, bonds_shear), FIELD(dem_figures, energy),
+    FIELD(dem_figures, bonds_tension), FIELD(dem_figures, bonds_shear), FIELD(dem_figures, bonds_lost), FIELD(dem_figures, energy),
     WHOLE(dem_pass_time),
     FIELD(dem_pass_time, name), FIELD(dem_pass_time, seconds),
     // made and read by functions only

@@ -35,7 +35,7 @@ static void put_row(dem_buffer *out, const dem_bond_def *defs, const dem_bond_vi
     dem_buffer_shortest(out, b->broken);
     dem_buffer_print(out, ",%llu,", (unsigned long long)b->broken_step);
     put_name(out, defs[b->def].name ? defs[b->def].name : "");
-    dem_buffer_print(out, ",%s,%u,%u,%u,%u", modes[b->state], (unsigned)b->body, (unsigned)b->other,
+    dem_buffer_print(out, ",%s,%u,%u,%u,%u", modes[b->state], (unsigned)b->id, (unsigned)b->other_id,
                      (unsigned)b->sphere, (unsigned)b->other_sphere);
     for (size_t k = 0; k < sizeof numbers / sizeof *numbers; k++) {
         dem_buffer_text(out, ",");

@@ -209,10 +209,12 @@ static void set_bond(const dem_network *n, bond_columns *c, size_t i, const dem_
                      const dem_bond_view *b)
 {
     bool intact = b->state == DEM_BOND_INTACT;
-    dem_vec3 x = bodies->position[b->body];
-    c->points[2 * i] = intact ? x : b->point;
-    c->points[2 * i + 1] =
-        intact ? image_near(&n->domain, bodies->position[b->other], image_near(&n->domain, b->point, x)) : b->point;
+    c->points[2 * i] = c->points[2 * i + 1] = b->point;
+    if (intact) {
+        dem_vec3 x = bodies->position[b->body];
+        c->points[2 * i] = x;
+        c->points[2 * i + 1] = image_near(&n->domain, bodies->position[b->other], image_near(&n->domain, b->point, x));
+    }
     c->ends[2 * i] = (uint32_t)(2 * i);
     c->ends[2 * i + 1] = (uint32_t)(2 * i + 1);
     c->force[i] = b->force;

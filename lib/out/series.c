@@ -24,7 +24,7 @@ struct dem_series {
     size_t size;  // bytes of whole rows
     size_t rows, columns, wall_count, measure_count;  // columns: of the whole
     wall_columns *walls;
-    bool bonds;
+    bool bonds, lost;
 };
 
 // ---- columns
@@ -137,6 +137,8 @@ static dem_status put_head(dem_buffer *out, const dem_series_def *def, dem_error
     }
     if (def->bonds)
         dem_buffer_text(out, ",bonds,bonds_broken_tension,bonds_broken_shear");
+    if (def->lost)
+        dem_buffer_text(out, ",bonds_lost");
     dem_buffer_text(out, "\n");
     free(names);
     return out->failed ? dem_fail_memory(error) : DEM_OK;
@@ -200,6 +202,8 @@ static void put_row(dem_buffer *out, const dem_series *s, const dem_figures *fig
         put_measure(out, &views[i]);
     if (s->bonds)
         dem_buffer_print(out, ",%zu,%zu,%zu", figures->bonds, figures->bonds_tension, figures->bonds_shear);
+    if (s->lost)
+        dem_buffer_print(out, ",%zu", figures->bonds_lost);
     dem_buffer_text(out, "\n");
 }
 
@@ -259,7 +263,8 @@ dem_status dem_series_open(const dem_series_def *def, double resume, dem_series 
                       .columns = COLUMNS + (def->flow ? FLOW_COLUMNS : 0),
                       .wall_count = def->wall_count,
                       .measure_count = def->measure_count,
-                      .bonds = def->bonds};
+                      .bonds = def->bonds,
+                      .lost = def->lost};
     s->walls = dem_alloc(def->wall_count, sizeof *s->walls);
     for (size_t i = 0; s->walls && i < def->wall_count; i++)
         s->walls[i] = columns_of(&def->walls[i]);

@@ -18,6 +18,7 @@ typedef struct dem_series_def {
     const dem_measure_def *measures;  ///< see dem_measure_view
     size_t measure_count;
     bool bonds;  ///< three columns: bonds that live, and those that broke
+    bool lost;   ///< a fourth one: those that went with a body
 } dem_series_def;
 
 /// Begins the table; with a time in `resume` [s] (NAN: a new run) it goes on with the one that is there, from which the

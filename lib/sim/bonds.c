@@ -107,11 +107,10 @@ static void put_impulse(double *to, double kick, dem_vec3 force, dem_vec3 on_a, 
            9 * sizeof *to);
 }
 
-static void break_bond(const dem_world *w, dem_bond *bond, const dem_bond_load *load)
+static void end_bond(const dem_world *w, dem_bond *bond, const dem_bond_load *load, dem_bond_state state)
 {
     dem_vec3 point = middle_of(w, bond, load);
-    bond->state = load->breaks;
-    bond->broken += load->elastic;
+    bond->state = state;
     bond->time = dem_world_time(w);
     bond->step = w->steps;
     memcpy(bond->point, (double[]){point.x, point.y, point.z}, sizeof bond->point);
@@ -146,7 +145,8 @@ void dem_bonds_compute(dem_world *w, size_t begin, size_t end, double kick, size
         if (b->defs[bond->def].damping > 0)
             note_drag(bond, &load, load.breaks ? 2 * acts : kick);
         if (load.breaks) {
-            break_bond(w, bond, &load);
+            end_bond(w, bond, &load, load.breaks);
+            bond->broken += load.elastic;
             b->part_broke[part] = true;
         }
     }
@@ -354,19 +354,62 @@ void dem_bonds_account(dem_world *w)
     b->freed_count = 0;
 }
 
+// ---- bodies that leave
+
+bool dem_bonds_hold(const dem_bonds *b, size_t row)
+{
+    return b->adjacency_first[row + 1] > b->adjacency_first[row];
+}
+
+// what is stored in it goes with the body
+void dem_bonds_lose(dem_world *w, size_t row)
+{
+    dem_bonds *b = w->bonds;
+    for (size_t i = b->adjacency_first[row]; i < b->adjacency_first[row + 1]; i++) {
+        dem_bond *bond = &b->items[b->live[b->adjacency[i] >> 1]];
+        if (bond->state != DEM_BOND_INTACT)
+            continue;
+        dem_bond_load load = dem_bond_now(w, bond);
+        bond->viscous += drag_power(bond->drag, &load) / 2;
+        end_bond(w, bond, &load, DEM_BOND_LOST);
+    }
+}
+
+void dem_bonds_forget(dem_world *w)
+{
+    dem_bonds *b = w->bonds;
+    for (size_t i = 0; i < b->count; i++) {
+        dem_bond *bond = &b->items[i];
+        bond->gone |= body_absent(&w->bodies, bond->a) ? 1u : 0;
+        bond->gone |= body_absent(&w->bodies, bond->b) ? 2u : 0;
+    }
+    list_live(w);
+}
+
 // ---- views
+
+// its number in the shape, whose body may have left
+static uint32_t sphere_within(const dem_world *w, uint32_t sphere)
+{
+    uint32_t first = 0;
+    for (size_t i = 0; i < w->shape_count; i++)
+        if (w->templates.items[i].first <= sphere && w->templates.items[i].first > first)
+            first = w->templates.items[i].first;
+    return sphere - first;
+}
 
 static void view_bond(dem_world *w, const dem_bond *bond, const dem_bond_load *load, dem_bond_view *view)
 {
     const dem_bond_def *def = &w->bonds->defs[bond->def];
-    const dem_bodies *bodies = &w->bodies;
     bool broken = bond->state != DEM_BOND_INTACT;
     *view = (dem_bond_view){
         .def = bond->def,
-        .body = w->views.by_row[bond->a],
-        .other = w->views.by_row[bond->b],
-        .sphere = bond->sphere_a - w->templates.items[bodies->shape[bond->a]].first,
-        .other_sphere = bond->sphere_b - w->templates.items[bodies->shape[bond->b]].first,
+        .body = bond->gone & 1 ? UINT32_MAX : w->views.by_row[bond->a],
+        .other = bond->gone & 2 ? UINT32_MAX : w->views.by_row[bond->b],
+        .id = bond->id[0],
+        .other_id = bond->id[1],
+        .sphere = sphere_within(w, bond->sphere_a),
+        .other_sphere = sphere_within(w, bond->sphere_b),
         .state = (dem_bond_state)bond->state,
         .point = broken ? from_array(bond->point) : middle_of(w, bond, load),
         .axis = load->axis,
@@ -422,6 +465,7 @@ dem_status dem_bonds_measure(dem_world *w, dem_error *error)
         f->bonds += bond->state == DEM_BOND_INTACT;
         f->bonds_tension += bond->state == DEM_BOND_BROKEN_TENSION;
         f->bonds_shear += bond->state == DEM_BOND_BROKEN_SHEAR;
+        f->bonds_lost += bond->state == DEM_BOND_LOST;
     }
     return DEM_OK;
 }

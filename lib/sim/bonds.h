@@ -13,7 +13,9 @@ typedef struct dem_bond {
     uint32_t a, b;                     ///< rows of the bodies, a < b
     uint32_t sphere_a, sphere_b;       ///< rows of the spheres
     int32_t sides[3];                  ///< periodic sides between them, for bodies that were never put back
-    uint32_t def, state, unused;       ///< dem_bond_state
+    uint32_t def, state;               ///< dem_bond_state
+    uint32_t id[2];                    ///< of the bodies by birth
+    uint32_t gone;                     ///< bits 1 and 2: the first, the second body has left, its row is not its own
     double anchor_a[3], anchor_b[3];   ///< the bond's ends in the bodies' run frames [m]
     double frame_a[4], frame_b[4];     ///< its frame in theirs, x from a to b
     double stiffness[BOND_WAYS];       ///< [N/m], [N m/rad]
@@ -44,7 +46,8 @@ struct dem_bonds {
     dem_bond_def *defs;  ///< names are this structure's
     size_t def_count;
     unsigned char *made;    ///< [defs]
-    unsigned char *member;  ///< [defs * rows] bits 1 and 2: of the first and second name
+    unsigned char *kin;     ///< [shapes * defs] what bodies to come are by their shape, as `member`
+    unsigned char *member;  ///< [rows * defs] bits 1 and 2: of the first and second name
     bool instead;           ///< some stand for the contact of their spheres
     double due;             ///< when the next are to be made [s]; INFINITY: never
     dem_bond *items;        ///< by bodies, image, spheres
@@ -89,6 +92,15 @@ void dem_bonds_add(dem_world *world, size_t begin, size_t end);
 /// listed, tells the ledger what energy came with them.
 dem_status dem_bonds_settle(dem_world *world, dem_error *error);
 void dem_bonds_account(dem_world *world);
+
+/// Bodies that come and go: more rows, after the `old` first; a body has come into a row; one is about to leave its row;
+/// all that are to leave have left. Errors: DEM_NO_MEMORY.
+bool dem_bonds_grow(dem_world *world, size_t old);
+void dem_bonds_join(dem_world *world, size_t row);
+void dem_bonds_lose(dem_world *world, size_t row);
+void dem_bonds_forget(dem_world *world);
+/// Whether the body has a bond that lives.
+bool dem_bonds_hold(const dem_bonds *bonds, size_t row);
 
 dem_bond_load dem_bond_now(const dem_world *world, const dem_bond *bond);
 

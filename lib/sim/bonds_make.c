@@ -7,6 +7,7 @@
 #include "sim/bonds.h"
 #include "sim/broad.h"
 #include "sim/measure.h"
+#include "sim/population.h"
 
 static const double LEAST_LENGTH = 1e-3;    // of the smaller radius, between centres
 static const double LARGEST = 1e100;        // stiffness [N/m], [N m/rad], and of dashpots
@@ -43,22 +44,50 @@ static bool copy_defs(dem_bonds *b, const dem_scene *scene)
     return b->defs && b->made;
 }
 
-static bool is_of(const dem_world *w, const char *name, const dem_body_def *body)
+static bool is_of(const dem_world *w, const char *name, const char *group, uint32_t shape)
 {
-    return !name || (body->group && strcmp(name, body->group) == 0) || strcmp(name, w->shape_names[body->shape]) == 0;
+    return !name || (group && strcmp(name, group) == 0) || strcmp(name, w->shape_names[shape]) == 0;
+}
+
+static void set_member(const dem_world *w, const dem_scene *scene, const char *group, uint32_t shape,
+                       unsigned char *member)
+{
+    for (size_t d = 0; d < scene->bond_count; d++)
+        for (unsigned k = 0; k < 2; k++)
+            if (is_of(w, scene->bonds[d].between[k], group, shape))
+                member[d] |= (unsigned char)(1u << k);
 }
 
 static bool set_members(dem_world *w, const dem_scene *scene, const dem_body_def *defs)
 {
     dem_bonds *b = w->bonds;
-    size_t n = w->bodies.count;
-    b->member = dem_alloc_zero(b->def_count * n, sizeof *b->member);
-    for (size_t d = 0; b->member && d < b->def_count; d++)
-        for (size_t i = 0; i < n; i++)
-            for (unsigned k = 0; k < 2; k++)
-                if (is_of(w, scene->bonds[d].between[k], &defs[i]))
-                    b->member[d * n + w->bodies.place[i]] |= (unsigned char)(1u << k);
-    return b->member;
+    b->kin = dem_alloc_zero(b->def_count * w->shape_count, sizeof *b->kin);
+    b->member = dem_alloc_zero(b->def_count * w->bodies.count, sizeof *b->member);
+    if (!b->kin || !b->member)
+        return false;
+    for (uint32_t shape = 0; shape < w->shape_count; shape++)
+        set_member(w, scene, NULL, shape, b->kin + shape * b->def_count);
+    for (size_t i = 0; i < w->bodies.living; i++)
+        set_member(w, scene, defs[i].group, defs[i].shape, b->member + w->bodies.place[i] * b->def_count);
+    return true;
+}
+
+void dem_bonds_join(dem_world *w, size_t row)
+{
+    dem_bonds *b = w->bonds;
+    memcpy(b->member + row * b->def_count, b->kin + w->bodies.shape[row] * b->def_count, b->def_count);
+}
+
+bool dem_bonds_grow(dem_world *w, size_t old)
+{
+    dem_bonds *b = w->bonds;
+    size_t rows = w->bodies.count;
+    unsigned char *member = realloc(b->member, rows * b->def_count);
+    if (!member)
+        return false;
+    memset(member + old * b->def_count, 0, (rows - old) * b->def_count);
+    b->member = member;
+    return dem_bonds_list(w);
 }
 
 static void set_due(dem_bonds *b)
@@ -89,7 +118,7 @@ dem_status dem_bonds_create(dem_world *w, const dem_scene *scene, const dem_body
             "\"parallel\", or other contacts_between_clumps");
     b->part_broke = dem_alloc_zero((size_t)w->threads, sizeof *b->part_broke);
     set_due(b);
-    double radius = 0;
+    double radius = w->population ? dem_population_largest(w->population) : 0;
     for (size_t row = 0; row < w->bodies.count; row++)
         radius = larger(radius, w->bodies.radius[row]);
     for (size_t i = 0; i < b->def_count; i++)
@@ -107,7 +136,7 @@ void dem_bonds_release(dem_bonds *b)
         return;
     for (size_t i = 0; i < b->def_count; i++)
         free((char *)b->defs[i].name);
-    void *all[] = {b->defs,      b->made,   b->member,  b->items,      b->live,  b->first, b->adjacency_first,
+    void *all[] = {b->defs,      b->made,   b->kin,     b->member,     b->items, b->live,  b->first, b->adjacency_first,
                    b->adjacency, b->strain, b->impulse, b->part_broke, b->freed, b->views, b};
     for (size_t i = 0; i < sizeof all / sizeof *all; i++)
         free(all[i]);
@@ -164,6 +193,11 @@ static sphere_now sphere_of(const dem_world *w, uint32_t row, uint32_t sphere, d
     return (sphere_now){v3_add(v3_add(body_position(&w->bodies, row), shift), arm), s[3] * scale, row, sphere};
 }
 
+static uint32_t id_of(const dem_world *w, uint32_t row)
+{
+    return w->bodies.id ? w->bodies.id[row] : w->views.by_row[row];
+}
+
 static void put_bond(const dem_world *w, const dem_pair *pair, dem_vec3 shift, const sphere_now s[2], uint32_t which,
                      dem_bond *bond)
 {
@@ -178,6 +212,7 @@ static void put_bond(const dem_world *w, const dem_pair *pair, dem_vec3 shift, c
                        .sphere_a = s[0].sphere,
                        .sphere_b = s[1].sphere,
                        .def = which,
+                       .id = {id_of(w, pair->a), id_of(w, pair->b)},
                        .apart = -overlap,
                        .radius = def->radius_multiplier * smaller(s[0].radius, s[1].radius)};
     int image[3];
@@ -236,9 +271,9 @@ static bool is_bonded(const dem_bonds *b, size_t old, const dem_bond *bond)
 static uint32_t fitting(const dem_world *w, const dem_pair *pair, double apart)
 {
     const dem_bonds *b = w->bonds;
-    size_t n = w->bodies.count;
+    const unsigned char *of_a = b->member + pair->a * b->def_count, *of_b = b->member + pair->b * b->def_count;
     for (size_t d = 0; d < b->def_count; d++) {
-        unsigned a = b->member[d * n + pair->a], other = b->member[d * n + pair->b];
+        unsigned a = of_a[d], other = of_b[d];
         bool both = ((a & 1) && (other & 2)) || ((a & 2) && (other & 1));
         if (both && !b->made[d] && b->defs[d].at <= dem_world_time(w) && apart <= b->defs[d].gap)
             return (uint32_t)d;

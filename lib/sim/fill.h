@@ -34,9 +34,9 @@ typedef struct dem_fill_obstacles {
     bool flat;                     ///< two dimensions: centres in the plane halfway up the box, turned about z only
     const dem_wall_def *walls;     ///< planes and cylinders; the position of mesh walls is asked of `clearance`
     size_t wall_count;
-    /// Least distance from the surface of a ball to any other wall [m], negative where it crosses one. Shrinking the
-    /// ball must raise it by as much. NULL: there are no other walls.
-    double (*clearance)(void *user, dem_vec3 centre, double radius);
+    /// Least distance from the surface of a ball to any other wall [m], negative where it crosses one, or `most` where
+    /// it is more than that. Shrinking the ball must raise it by as much. NULL: there are no other walls.
+    double (*clearance)(void *user, dem_vec3 centre, double radius, double most);
     void *user;
 } dem_fill_obstacles;
 

@@ -23,15 +23,15 @@ static double wall_clearance(const dem_wall_def *wall, dem_vec3 centre, double r
     return (wall->outside ? off - wall->radius : wall->radius - off) - radius;
 }
 
-// least distance from a ball to the walls
-static double clearance(const dem_room *room, dem_vec3 centre, double radius)
+// least distance from a ball to the walls, as far as it is less than `most`
+static double clearance(const dem_room *room, dem_vec3 centre, double radius, double most)
 {
     const dem_fill_obstacles *there = room->there;
-    double least = INFINITY;
+    double least = most;
     for (size_t i = 0; i < there->wall_count; i++)
         if (there->walls[i].kind != DEM_WALL_MESH)
             least = fmin(least, wall_clearance(&there->walls[i], centre, radius));
-    return there->clearance ? fmin(least, there->clearance(there->user, centre, radius)) : least;
+    return there->clearance ? there->clearance(there->user, centre, radius, least) : least;
 }
 
 // a walk over the cells of a grid that a ball reaches
@@ -148,7 +148,7 @@ dem_room_sight dem_room_look(dem_room *room, const dem_room_trial *trial, dem_ve
     looking l = {trial, position, without};
     if (blocked || visit_near(room, position, trial->radius + room->gap, look_at, &l))
         return DEM_ROOM_BLOCKED;
-    double clear = clearance(room, position, trial->radius);
+    double clear = clearance(room, position, trial->radius, room->gap);
     room->near_wall = clear < room->gap;
     // a smaller ball is as much farther away
     if (room->near_wall && trial->core > 0 && clear + trial->radius - trial->core < room->gap)
@@ -225,7 +225,7 @@ static bool overlaps_itself(dem_room *room, const dem_room_trial *trial)
 static bool crosses_walls(const dem_room *room, const dem_room_trial *trial, dem_vec3 position)
 {
     for (size_t i = 0; i < trial->count; i++)
-        if (clearance(room, v3_add(position, trial->balls[i].centre), trial->balls[i].radius) < room->gap)
+        if (clearance(room, v3_add(position, trial->balls[i].centre), trial->balls[i].radius, room->gap) < room->gap)
             return true;
     return false;
 }
@@ -277,7 +277,7 @@ bool dem_room_covered(dem_room *room, dem_vec3 centre, double half, double core)
         return false;
     centre = room_point(room, centre);
     covering c = {centre, half, core};
-    if (clearance(room, centre, core) + half < room->gap)
+    if (clearance(room, centre, core, room->gap - half) < room->gap - half)
         return true;
     return visit_near(room, centre, fmax(core + room->gap - half, 0), covers, &c);
 }

@@ -4,6 +4,7 @@
 
 #include "base/status.h"
 #include "sim/bodies.h"
+#include "sim/bonds.h"
 #include "sim/broad.h"
 #include "sim/measure.h"
 #include "sim/population.h"
@@ -87,6 +88,8 @@ dem_status dem_world_grow(dem_world *w, size_t rows, dem_error *error)
     if (w->features.watch)
         good = good && extend(&w->strained, padded, w->bodies.padded, sizeof *w->strained);
     if (!good)
+        return dem_fail_memory(error);
+    if (w->bonds && !dem_bonds_grow(w, old))
         return dem_fail_memory(error);
     move_dummies(w, dummy);
     dem_search_destroy(w->search);

@@ -183,7 +183,6 @@ static dem_status look_for_place(dem_world *w, dem_inlet *inlet, room *r, dem_bo
         box.high = v3_add(d->centre, half);
     }
     double radius = w->templates.items[body->shape].radius_out * body->scale;
-    placing->look = 2 * (inlet->largest + d->gap);
     dem_fill_obstacles there = {.bodies = r->bodies,
                                 .body_count = r->count,
                                 .domain = &w->domain,

@@ -72,7 +72,8 @@ static void bound_walls(dem_world *w)
 
 static bool search_due(const dem_world *w)
 {
-    if (w->population && w->population->search)
+    bool never = !w->pairs.first;  // nobody asks in a world without bodies
+    if (never || (w->population && w->population->search))
         return true;
     for (size_t k = 0; k < w->asked_count; k++)
         if (!(w->bodies.path[w->asked[k]] - w->bodies.path_then[w->asked[k]] <= w->skin / 2))

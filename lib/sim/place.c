@@ -77,26 +77,28 @@ static double smooth_distance(const dem_world *w, size_t wall, dem_vec3 x)
     return dem_wall_distance(&w->walls, wall, x);
 }
 
-double dem_placing_clearance(void *user, dem_vec3 centre, double radius)
+double dem_placing_clearance(void *user, dem_vec3 centre, double radius, double most)
 {
     dem_placing *p = user;
-    double least = p->look;
+    double least = most;
     for (size_t i = 0; i < p->w->walls.count; i++) {
         const dem_wall *wall = &p->w->walls.items[i];
         if (!wall->mesh) {
             if (p->smooth)
-                least = smaller(least, smooth_distance(p->w, i, centre));
+                least = smaller(least, smooth_distance(p->w, i, centre) - radius);
             continue;
         }
+        if (!(least + radius > 0))
+            continue;
         dem_vec3 x = wall_from_space(wall, centre);
-        if (!dem_mesh_wall_near(wall->mesh, x, least, &p->near))
+        if (!dem_mesh_wall_near(wall->mesh, x, least + radius, &p->near))
             p->failed = true;
         for (size_t k = 0; k < p->near.count; k++) {
             dem_closest c = triangle_closest(&wall->mesh->triangles[p->near.items[k]], x);
-            least = smaller(least, sqrt(c.distance2));
+            least = smaller(least, sqrt(c.distance2) - radius);
         }
     }
-    return least - radius;
+    return least;
 }
 
 static bool has_meshes(const dem_world *w)
@@ -107,30 +109,11 @@ static bool has_meshes(const dem_world *w)
     return false;
 }
 
-// how large the largest body of a fill can be
-static double largest_radius(const dem_placing *p, const dem_fill_def *fill)
-{
-    double largest = 0;
-    for (size_t i = 0; i < fill->mix_count; i++) {
-        const dem_fill_shape *s = &p->shapes[fill->mix[i].shape];
-        const dem_size_def *size = &fill->mix[i].size;
-        double most = s->equivalent_diameter;
-        if (size->law == DEM_SIZE_TABLE && size->table_count)
-            most = size->sizes[size->table_count - 1];
-        else if (size->law != DEM_SIZE_AS_IS)
-            most = isfinite(size->largest) ? size->largest
-                                           : 10 * larger(size->a, size->law == DEM_SIZE_LOGNORMAL ? 0 : size->b);
-        largest = larger(largest, s->radius_out * most / s->equivalent_diameter);
-    }
-    return largest;
-}
-
 static dem_status add_fill(dem_placing *p, const dem_scene *scene, const dem_fill_def *fill, dem_body_def **bodies,
                            size_t *count, dem_error *error)
 {
     dem_body_def *more;
     size_t added;
-    p->look = 2 * (largest_radius(p, fill) + fill->gap);
     bool flat = scene->dimension == 2;
     for (size_t i = 0; flat && i < p->w->shape_count; i++) {
         // the void ratio is one of areas

@@ -15,7 +15,6 @@ typedef struct dem_placing {
     const dem_world *w;
     dem_fill_shape *shapes;
     dem_ball *balls;
-    double look;   ///< how far walls are asked for [m]
     bool smooth;   ///< planes and cylinders are asked, too
     bool failed;   ///< out of memory, at the end of any call
     dem_ray_list near;
@@ -24,7 +23,7 @@ typedef struct dem_placing {
 bool dem_placing_create(const dem_world *world, dem_placing *placing);
 void dem_placing_release(dem_placing *placing);
 /// See dem_fill_obstacles.
-double dem_placing_clearance(void *placing, dem_vec3 centre, double radius);
+double dem_placing_clearance(void *placing, dem_vec3 centre, double radius, double most);
 
 /// A shape that is a plain sphere, as a clump.
 dem_status dem_sphere_clump(const dem_scene *scene, size_t shape, dem_clump **clump, dem_error *error);

@@ -6,6 +6,7 @@
 #include "base/random.h"
 #include "base/status.h"
 #include "sim/bodies.h"
+#include "sim/bonds.h"
 #include "sim/hold.h"
 #include "sim/lists.h"
 #include "sim/measure.h"
@@ -115,10 +116,6 @@ dem_status dem_population_create(dem_world *w, const dem_scene *scene, dem_error
         return dem_fail(error, DEM_BAD_INPUT,
                         "\"contacts_between_clumps\": \"soft\" does not go with bodies that come or go; leave out "
                         "\"inlets\" and \"leaving\": \"delete\", or take \"sum\"");
-    if (scene->bond_count)
-        return dem_fail(error, DEM_BAD_INPUT,
-                        "\"bonds\" do not go with bodies that come or go; leave out \"inlets\" and \"leaving\": "
-                        "\"delete\", or the bonds");
     dem_population *p = w->population = dem_alloc_zero(1, sizeof *p);
     if (!p)
         return dem_fail_memory(error);
@@ -230,6 +227,8 @@ dem_status dem_population_add(dem_world *w, const dem_body_def *def, uint32_t *r
     }
     dem_body_put(w, *row, def);
     b->id[*row] = (uint32_t)p->next_id++;
+    if (w->bonds)
+        dem_bonds_join(w, *row);
     w->views.by_row[*row] = (uint32_t)b->living;
     b->place[b->living++] = *row;
     p->search = true;
@@ -255,10 +254,12 @@ dem_status dem_population_feed(dem_world *w, dem_error *error)
 
 // ---- going
 
-// whether lists name contacts of the body
+// whether lists name contacts or bonds of the body
 static bool is_listed(const dem_world *w, size_t row)
 {
     const dem_pairs *pairs = &w->pairs;
+    if (w->bonds && dem_bonds_hold(w->bonds, row))
+        return true;
     for (size_t i = pairs->adjacency_first[row]; i < pairs->adjacency_first[row + 1]; i++)
         if (pairs->items[pairs->adjacency[i]].count)
             return true;
@@ -275,6 +276,8 @@ static bool is_listed(const dem_world *w, size_t row)
 static void remove_body(dem_world *w, size_t row)
 {
     dem_population *p = w->population;
+    if (w->bonds)
+        dem_bonds_lose(w, row);
     p->left++;
     p->left_mass += body_mass(w, row);
     for (size_t i = 0; i < p->inlet_count; i++)
@@ -339,6 +342,8 @@ dem_status dem_population_leave(dem_world *w, dem_error *error)
                 dem_population_count_energy(w, (uint32_t)row, -1);
             remove_body(w, row);
         }
+    if (w->bonds)
+        dem_bonds_forget(w);
     close_ranks(w);
     tell(w);
     if (!listed)

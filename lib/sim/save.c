@@ -12,7 +12,7 @@
 #include "sim/measure.h"
 #include "sim/population.h"
 
-enum { LAYOUT = 2 };
+enum { LAYOUT = 3 };
 
 static uint64_t hash_bytes(uint64_t hash, const void *bytes, size_t size)
 {
@@ -311,6 +311,8 @@ static void pass_bonds(cursor *c, dem_world *w)
 {
     dem_bonds *b = w->bonds;
     pass(c, b->made, b->def_count * sizeof *b->made);
+    if (w->population)
+        pass(c, b->member, b->def_count * w->bodies.count * sizeof *b->member);
     pass(c, &b->due, sizeof b->due);
     pass_array(c, &b->items, &b->count, sizeof *b->items);
     b->capacity = b->count;

@@ -221,8 +221,6 @@ static dem_status make_state(dem_world *w, const dem_scene *scene, dem_error *er
     for (size_t i = 0; i < count; i++)
         w->asked[i] = (uint32_t)i;
     w->asked_count = count;
-    if (w->population)
-        w->population->search = true;  // also where there is nobody who asks
     // good enough for the margins of the first lists
     w->next_step = w->last_step = w->time_def.step > 0 ? w->time_def.step : dem_step_guess(w);
     DEM_TRY(dem_lists_update(w, error));

@@ -72,7 +72,8 @@ typedef enum dem_bond_state {
 /// One bond between spheres of two bodies. Of a broken one: point, stresses and time of the breakage, no force.
 typedef struct dem_bond_view {
     uint32_t def;                   ///< index into the scene's bonds
-    uint32_t body, other;
+    uint32_t body, other;           ///< UINT32_MAX: has left since
+    uint32_t id, other_id;          ///< of these by birth, see dem_body_view
     uint32_t sphere, other_sphere;  ///< of the shapes
     dem_bond_state state;
     dem_vec3 point;         ///< half way between its ends; inside a periodic domain that of `body` [m]
@@ -145,6 +146,7 @@ typedef struct dem_figures {
     double highest;                ///< largest coordinate of a surface along -gravity (z without gravity) [m]
     size_t bonds;                  ///< intact
     size_t bonds_tension, bonds_shear;  ///< broken so far
+    size_t bonds_lost;                  ///< that bodies have taken along as they left
     dem_energy energy;
 } dem_figures;
 
