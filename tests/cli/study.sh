@@ -102,3 +102,13 @@ mentions "there is no integrator 'rk4'"
 run 3 dem-study convergence none.json
 run 4 dem-study convergence free-top --levels 2 -o /dev/null/x
 finish
+
+# ---- stability
+run 0 dem-study stability --list
+prints 'limit-single'
+run 0 dem-study stability limit-single limit-sweep --all
+prints 'blows up at, over the predicted limit'
+run 0 dem-study stability limit-single -q -o stability.html -o stability.csv
+grep -q '<svg' stability.html || fail 'no plot on the page'
+[ "$(wc -l < stability.csv)" -eq 4 ] || fail 'figures in the CSV'
+run 2 dem-study stability --slow
