@@ -65,3 +65,13 @@ mentions 'none.csv:3: sigma3 is no number'
 run 2 dem-study mohr-coulomb tests.csv --unit mm
 mentions '-unit: '
 finish
+
+# ---- stability
+run 0 dem-study stability --list
+prints 'limit-single'
+run 0 dem-study stability limit-single limit-sweep --all
+prints 'blows up at, over the predicted limit'
+run 0 dem-study stability limit-single -q -o stability.html -o stability.csv
+grep -q '<svg' stability.html || fail 'no plot on the page'
+[ "$(wc -l < stability.csv)" -eq 4 ] || fail 'figures in the CSV'
+run 2 dem-study stability --slow
