@@ -2,6 +2,7 @@
 #include <string.h>
 
 #include "cli.h"
+#include "study_dimers.h"
 #include "study_lab.h"
 #include "study_mohr.h"
 #include "study_suite.h"
@@ -17,6 +18,7 @@ static const subcommand subcommands[] = {
     {"mohr-coulomb", study_mohr_coulomb},
     {"scene", study_scene},
     {"test", study_test},
+    {"dimers", study_dimers},
 };
 
 static int no_study(const cli_tool *tool, const char *name)

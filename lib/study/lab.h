@@ -41,6 +41,7 @@ typedef struct dem_lab_test {
     double bodies, overlap;  ///< standards of LAB_BODIES and LAB_OVERLAP
     const dem_lab_name *figures;
     size_t figure_count;
+    size_t main_count;            ///< the first so many are what studies compare
     const dem_lab_name *columns;  ///< of the path; NULL: it has none
     size_t column_count;
     dem_status (*prepare)(dem_lab *lab, dem_error *error);  ///< NULL: nothing

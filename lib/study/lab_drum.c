@@ -127,6 +127,7 @@ const dem_lab_test dem_lab_drum = {
     .figure_count = sizeof figures / sizeof *figures,
     .columns = columns,
     .column_count = COLUMNS,
+    .main_count = 1,
     .write = write,
     .run = run,
 };

@@ -145,6 +145,7 @@ const dem_lab_test dem_lab_heap = {
     .overlap = 0.005,
     .figures = figures,
     .figure_count = sizeof figures / sizeof *figures,
+    .main_count = 1,
     .write = write,
     .run = run,
 };

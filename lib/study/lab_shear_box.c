@@ -16,8 +16,8 @@ enum { STRESS = LAB_COMMON, DISPLACEMENT, RATE, THICKNESS, SLENDERNESS, PREPARAT
 
 static const dem_lab_name figures[] = {
     {"peak_angle", "deg", "of the largest shear force over the normal one, mean over 1/30 of the path"},
-    {"peak_displacement", "d", "of the lower half there"},
     {"critical_angle", "deg", "of the mean over the last third of the path"},
+    {"peak_displacement", "d", "of the lower half there"},
     {"dilation", "d", "rise of the top plate until the end"},
     {"void_ratio", "-", "of the box before"},
 };
@@ -197,6 +197,7 @@ const dem_lab_test dem_lab_shear_box = {
     .columns = columns,
     .column_count = COLUMNS,
     .prepare = prepare,
+    .main_count = 2,
     .write = write,
     .run = run,
 };

@@ -14,8 +14,8 @@ enum { CONFINEMENT = LAB_COMMON, STRAIN, RATE, PREPARATION };
 
 static const dem_lab_name figures[] = {
     {"peak_angle", "deg", "largest mobilised friction angle, mean over 1 % of strain"},
-    {"peak_strain", "-", "axial strain there"},
     {"critical_angle", "deg", "mobilised friction angle, mean over the last third of the strain"},
+    {"peak_strain", "-", "axial strain there"},
     {"void_ratio", "-", "of the box before"},
     {"critical_void_ratio", "-", "of the box, mean over the last third"},
     {"coordination", "-", "grains and walls that a grain touches before, mean"},
@@ -189,6 +189,7 @@ const dem_lab_test dem_lab_triaxial = {
     .columns = columns,
     .column_count = COLUMNS,
     .prepare = prepare,
+    .main_count = 2,
     .write = write,
     .run = run,
 };
