@@ -5,6 +5,7 @@
 #include "study_dimers.h"
 #include "study_lab.h"
 #include "study_mohr.h"
+#include "study_shape.h"
 #include "study_suite.h"
 
 // what stands before the options and has options of its own
@@ -18,6 +19,7 @@ static const subcommand subcommands[] = {
     {"mohr-coulomb", study_mohr_coulomb},
     {"scene", study_scene},
     {"test", study_test},
+    {"shape", study_shape},
     {"dimers", study_dimers},
 };
 

@@ -10,7 +10,7 @@
 
 static const dem_parameter params[] = {
     {"thickness", 5, 3, 100, "d", "of the bed across the slope, which is periodic"},
-    {"height", 0.95, 0.3, 5, "-", "of the bed behind the gate over the length of the ledge"},
+    {"height", 1.3, 0.3, 5, "-", "of the bed behind the gate over the length of the ledge"},
     {"gate_speed", 1, 0.01, 10, "sqrt(g d)", "with which the gate goes up"},
     {"lip", 0.7, 0.1, 3, "d", "height of the lip at the edge, so that the lowest grains do not roll off"},
     {"gravity", 9.81, 1e-6, 1e6, "m/s^2", "downwards"},
