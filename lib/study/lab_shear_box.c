@@ -56,7 +56,7 @@ static void put_top(const dem_lab *l, const box *b, dem_buffer *out, double heig
 {
     dem_lab_put(out, "    \"top\": { \"plane\": { \"point\": [0, 0, @], \"normal\": [0, 0, -1] }, ", height);
     dem_buffer_print(out, "\"material\": \"%s\",\n      \"servo\": { ", material);
-    dem_lab_put(out, "\"stress\": @, \"area\": @, \"max_velocity\": @ } }", l->values[STRESS], b->length * b->depth,
+    dem_lab_put(out, "\"stress\": @, \"area\": @, \"gain\": 1, \"max_velocity\": @ } }", l->values[STRESS], b->length * b->depth,
                 0.1 * l->values[LAB_DIAMETER] / b->unit);
 }
 
