@@ -163,10 +163,10 @@ static void grains_without_friction_jam_where_it_is_known(void **state)
         check_ok(dem_cluster_regular(2, i ? 0.4 : 0, &clump, &error), error);
         dem_jam_def def = dem_jam_defaults();
         def.clump = clump;
-        def.bodies = 60;
+        def.bodies = 100;
         def.begin = 0.4;
         def.growth = 0.01;
-        def.steps = 300;
+        def.steps = 600;
         check_ok(dem_jam_run(&ctx, &def, &jam, &error), error);
         solid[i] = jam.solid_fraction;
         contacts[i] = jam.contacts;
@@ -174,12 +174,12 @@ static void grains_without_friction_jam_where_it_is_known(void **state)
         check(jam.loose < 0.2);
         dem_clump_destroy(clump);
     }
-    // 0.64 and 0.703 of large and slow packings; 60 grains and fast growth stay up to 0.04 below
+    // 0.64 and 0.703 of large and slow packings; 100 grains and fast growth stay up to 0.04 below
     check_near(solid[0], 0.62, 0.025);
     check_near(solid[1], 0.68, 0.03);
     // 6 contacts hold a sphere, 10 a grain that is round about an axis; few are missing or too many
-    check_near(contacts[0], 6.1, 0.6);
-    check_near(contacts[1], 9.6, 1);
+    check_near(contacts[0], 6, 0.9);
+    check_near(contacts[1], 9.5, 1.5);
 }
 
 static void aspect_ratios_that_cannot_be_are_refused(void **state)
