@@ -336,6 +336,21 @@ int dem_mesh_wall_contacts(const dem_mesh_wall *wall, const uint32_t *ids, size_
     return dem_mesh_wall_sift(wall, ids, NULL, count, centre, radius, contacts, most);
 }
 
+double dem_mesh_wall_close(const dem_mesh_wall *wall, const uint32_t *ids, size_t count, dem_vec3 centre, double reach,
+                           uint32_t *close, uint32_t *close_count)
+{
+    double next2 = INFINITY;
+    *close_count = 0;
+    for (size_t k = 0; k < count; k++) {
+        double distance2 = triangle_closest(&wall->triangles[ids[k]], centre).distance2;
+        if (distance2 < reach * reach)
+            close[(*close_count)++] = ids[k];
+        else
+            next2 = distance2 < next2 ? distance2 : next2;
+    }
+    return sqrt(next2);
+}
+
 // ---- history
 
 void dem_mesh_contacts_follow(const dem_mesh_contact *last, int last_count, const dem_mesh_contact *contacts, int count,
