@@ -20,11 +20,6 @@ void dem_mesh_touches_release(dem_mesh_touches *t)
     *t = (dem_mesh_touches){0};
 }
 
-static dem_mesh_near unknown(const dem_mesh_touch *touch)
-{
-    return (dem_mesh_near){.until = -1, .shown = touch->slot_count};
-}
-
 bool dem_mesh_touches_forget(dem_mesh_touches *t)
 {
     free(t->near);
@@ -34,7 +29,7 @@ bool dem_mesh_touches_forget(dem_mesh_touches *t)
     t->near_capacity = t->near ? t->count : 0;
     t->close_capacity = t->close ? t->triangle_count : 0;
     for (size_t i = 0; t->near && i < t->count; i++)
-        t->near[i] = unknown(&t->items[i]);
+        t->near[i] = (dem_mesh_near){.until = -1, .shown = t->items[i].slot_count};
     return t->near && t->close;
 }
 
@@ -61,9 +56,16 @@ static bool add_touch(dem_mesh_touches *t, dem_mesh_touch touch)
     if (!dem_grow(&t->items, &t->capacity, t->count, sizeof *t->items) ||
         !dem_grow(&t->near, &t->near_capacity, t->count, sizeof *t->near))
         return false;
-    t->near[t->count] = unknown(&touch);
+    // new places say that nothing touches
+    t->near[t->count] = (dem_mesh_near){.until = -1};
     t->items[t->count++] = touch;
     return true;
+}
+
+static uint32_t slots_for(const dem_world *w, uint32_t contacts)
+{
+    uint32_t slots = w->walls.slots, needed = contacts < DEM_MESH_CONTACTS ? contacts : DEM_MESH_CONTACTS;
+    return (needed + slots - 1) / slots * slots;
 }
 
 // one ball against the triangles about its body; lowers the slack to the nearest that is not listed
@@ -85,7 +87,7 @@ static bool search_ball(dem_world *w, size_t row, uint32_t sphere, uint32_t wall
         *slack = smaller(*slack, gap);
     }
     touch.count = (uint32_t)(t->triangle_count - touch.first);
-    touch.slot_count = touch.count < DEM_MESH_CONTACTS ? touch.count : DEM_MESH_CONTACTS;
+    touch.slot_count = slots_for(w, touch.count);
     return touch.count == 0 || add_touch(t, touch);
 }
 
@@ -106,7 +108,7 @@ static bool search_surface(dem_world *w, size_t row, uint32_t wall, double margi
                                 .sphere = i,
                                 .wall = wall,
                                 .first = (uint32_t)t->triangle_count,
-                                .slot_count = (uint32_t)dem_surface_most(&about->surface)};
+                                .slot_count = slots_for(w, (uint32_t)dem_surface_most(&about->surface))};
         if (gap < margin && !add_touch(t, touch))
             return false;
         *slack = smaller(*slack, larger(gap, margin));
@@ -164,10 +166,8 @@ bool dem_mesh_touch_copy(const dem_mesh_touches *from, const dem_mesh_touch *old
             return false;
     if (!take_last(from, old, to, &touch) || !add_touch(to, touch))
         return false;
-    // what is known stays so; only the columns are new
-    const dem_mesh_near *near = &from->near[old - from->items];
-    to->near[to->count - 1].until = near->until;
-    to->near[to->count - 1].count = near->count;
+    to->near[to->count - 1] = from->near[old - from->items];
+    to->near[to->count - 1].shown = 0;
     if (touch.count)
         memcpy(to->close + touch.first, from->close + old->first, touch.count * sizeof *to->close);
     return true;
@@ -235,36 +235,48 @@ static bool stay(const dem_mesh_touches *t, const dem_mesh_touch *touch, const d
     return from[0] == 0;
 }
 
+// what is known holds until the body or a wall has come nearer by this
+static void holds_for(const dem_world *w, const dem_mesh_touch *touch, dem_mesh_near *near, dem_vec3 centre,
+                      double radius, double gap)
+{
+    // the walls' path already has the step that is being made
+    double now = w->bodies.path[touch->a] + w->wall_path - w->sweep_speed * w->next_step;
+    near->until = now + KEPT_SLACK * gap - ROUNDING * (v3_norm(centre) + radius);
+}
+
 // Which of its candidates a ball may touch before it, or a wall, has gone on by some steps.
 static void look_close(dem_world *w, dem_mesh_touches *t, size_t k, dem_vec3 centre, double radius)
 {
     const dem_mesh_touch *touch = &t->items[k];
-    const dem_wall *wall = &w->walls.items[touch->wall];
-    dem_mesh_near *near = &t->near[k];
-    double ahead = w->sweep_speed * w->next_step, next;
-    if (wall->mesh) {
-        double reach = radius + CLOSE_STRIDES * (body_stride(&w->bodies, touch->a, w->next_step) + ahead);
-        next = dem_mesh_wall_close(wall->mesh, t->triangles + touch->first, touch->count, centre, reach,
-                                   t->close + touch->first, &near->count);
-    } else {
-        next = dem_surface_distance(&wall->surface, centre);
-        near->count = next < radius;
-        next = near->count ? -INFINITY : next;
-    }
-    // the walls' path already has the step that is being made
-    near->until = w->bodies.path[touch->a] + w->wall_path - ahead + KEPT_SLACK * (next - radius) -
-                  ROUNDING * (v3_norm(centre) + radius);
+    double stride = body_stride(&w->bodies, touch->a, w->next_step) + w->sweep_speed * w->next_step;
+    double next = dem_mesh_wall_close(w->walls.items[touch->wall].mesh, t->triangles + touch->first, touch->count, centre,
+                                      radius + CLOSE_STRIDES * stride, t->close + touch->first, &t->near[k].count);
+    holds_for(w, touch, &t->near[k], centre, radius, next - radius);
 }
 
-static int find_contacts(const dem_wall *wall, const dem_mesh_touches *t, size_t k, dem_vec3 centre, double radius,
+static int surface_contacts(dem_world *w, dem_mesh_touches *t, size_t k, dem_vec3 centre, double radius,
+                            dem_mesh_contact *contacts)
+{
+    const dem_surface *surface = &w->walls.items[t->items[k].wall].surface;
+    int count = dem_surface_contacts(surface, centre, radius, contacts);
+    t->near[k].count = (uint32_t)count;
+    if (!count)
+        holds_for(w, &t->items[k], &t->near[k], centre, radius, dem_surface_distance(surface, centre) - radius);
+    return count;
+}
+
+static int find_contacts(dem_world *w, dem_mesh_touches *t, size_t k, dem_vec3 centre, double radius, bool known,
                          dem_mesh_contact *contacts)
 {
     const dem_mesh_touch *touch = &t->items[k];
+    const dem_mesh_wall *mesh = w->walls.items[touch->wall].mesh;
+    if (!mesh)
+        return surface_contacts(w, t, k, centre, radius, contacts);
+    if (!known)
+        look_close(w, t, k, centre, radius);
     if (!t->near[k].count)
         return 0;
-    if (!wall->mesh)
-        return dem_surface_contacts(&wall->surface, centre, radius, contacts);
-    return dem_mesh_wall_contacts(wall->mesh, t->close + touch->first, t->near[k].count, centre, radius, contacts,
+    return dem_mesh_wall_contacts(mesh, t->close + touch->first, t->near[k].count, centre, radius, contacts,
                                   (int)touch->slot_count);
 }
 
@@ -295,10 +307,8 @@ static void measure_touch(dem_world *w, const dem_contact_extras *extras, const 
     dem_ball ball = space_ball(w, touch->a, touch->sphere);
     dem_vec3 centre = wall_from_space(wall, ball.centre);
     double radius = ball.radius + (w->reach + w->ahead);
-    if (!known)
-        look_close(w, t, k, centre, radius);
     dem_mesh_contact contacts[DEM_MESH_CONTACTS];
-    int count = find_contacts(wall, t, k, centre, radius, contacts);
+    int count = find_contacts(w, t, k, centre, radius, known, contacts);
     double overlap = count ? larger(ball.radius - contacts[0].distance, 0) : 0, close = 0.1 * sqrt(ball.radius * overlap);
     if (stay(t, touch, contacts, count, close))
         t->last[touch->slot] = contacts[0];

@@ -7,6 +7,7 @@
 
 #include "base/memory.h"
 #include "dem/world.h"
+#include "sim/kernels.h"
 #include "sim/mesh_wall.h"
 
 /// One ball near one mesh wall.
@@ -57,6 +58,15 @@ bool dem_mesh_touch_remember(const dem_mesh_touches *old, dem_mesh_touches *touc
 /// The contacts of the balls of the segments [begin, end) as they stand now: geometry columns and springs. Doing it
 /// again where nothing has moved changes nothing.
 void dem_mesh_touch_measure(dem_world *world, size_t begin, size_t end);
+
+/// Whether none of the 8 contacts from `begin` on is one, so that nothing would come of them.
+static inline bool dem_mesh_block_idle(const dem_contact_columns *c, size_t begin)
+{
+    double most = 0;
+    for (size_t i = begin; i < begin + DEM_BLOCK_LANES; i++)
+        most += fabs(c->geometry[0][i]) + fabs(c->geometry[1][i]) + fabs(c->geometry[2][i]);
+    return !(most > 0);
+}
 
 /// The same of all, with the wear that comes of it. Error: DEM_NO_MEMORY.
 dem_status dem_mesh_touch_measure_all(dem_world *world, dem_error *error);

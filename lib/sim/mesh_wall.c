@@ -314,6 +314,18 @@ static void keep(search *s, candidate *room)
     s->count = count;
 }
 
+// one triangle alone is hidden by nothing
+static int touch_one(const search *s, dem_mesh_contact *contact)
+{
+    candidate c;
+    make_candidate(s, 0, &c);
+    if (!(c.spot.distance2 < s->radius * s->radius) ||
+        is_far(&s->wall->triangles[c.triangle], s->centre, s->radius * s->radius))
+        return 0;
+    *contact = contact_at(s, &c);
+    return 1;
+}
+
 int dem_mesh_wall_sift(const dem_mesh_wall *wall, const uint32_t *ids, const dem_closest *spots, size_t count,
                        dem_vec3 centre, double radius, dem_mesh_contact *contacts, int most)
 {
@@ -321,6 +333,8 @@ int dem_mesh_wall_sift(const dem_mesh_wall *wall, const uint32_t *ids, const dem
     search s = {wall, centre, radius, ids, spots, count, NULL};
     int found = 0;
     DEM_ASSERT(most <= DEM_MESH_CONTACTS);
+    if (count == 1 && most > 0)
+        return touch_one(&s, contacts);
     keep(&s, room);
     while (found < most && next_candidate(&s, contacts, found, &at)) {
         candidate c = at;
@@ -359,6 +373,12 @@ void dem_mesh_contacts_follow(const dem_mesh_contact *last, int last_count, cons
     const double aligned = 0.96592582628906829;  // cos 15 degrees
     bool used[DEM_MESH_CONTACTS] = {false};
     DEM_ASSERT(last_count <= DEM_MESH_CONTACTS && count <= DEM_MESH_CONTACTS);
+    if (count == 1 && last_count == 1) {
+        // most are alone
+        bool near = v3_norm2(v3_sub(contacts->point, last->point)) <= reach * reach;
+        from[0] = near && v3_dot(contacts->normal, last->normal) >= aligned ? 0 : -1;
+        return;
+    }
     for (int k = 0; k < count; k++)
         from[k] = -1;
     for (;;) {
