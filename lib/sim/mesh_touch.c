@@ -77,6 +77,8 @@ static bool search_ball(dem_world *w, size_t row, uint32_t sphere, uint32_t wall
     dem_vec3 centre = wall_from_space(about, ball.centre);
     dem_mesh_touch touch = {.a = (uint32_t)row, .sphere = sphere, .wall = wall, .first = (uint32_t)t->triangle_count};
     for (size_t i = 0; i < near->count; i++) {
+        if (triangle_is_beyond(&about->mesh->triangles[near->items[i]], centre, ball.radius + larger(margin, *slack)))
+            continue;
         dem_closest spot = triangle_closest(&about->mesh->triangles[near->items[i]], centre);
         double gap = sqrt(spot.distance2) - ball.radius;
         if (gap < margin) {
@@ -290,7 +292,7 @@ static void show(const dem_world *w, const dem_segment *s, dem_mesh_touches *t, 
         put_geometry(c, segment_place(s, touch->slot + i), v3_scale(wall_turn(wall, contacts[i].normal), -1),
                      radius - contacts[i].distance, v3_add(arm, wall_turn(wall, contacts[i].offset)));
     for (uint32_t i = count; i < t->near[k].shown; i++)
-        put_geometry(c, segment_place(s, touch->slot + i), v3(0, 0, 0), -1, v3(0, 0, 0));
+        put_geometry(c, segment_place(s, touch->slot + i), v3(0, 0, 0), DEM_MESH_NO_OVERLAP, v3(0, 0, 0));
     t->near[k].shown = count;
 }
 

@@ -10,6 +10,9 @@
 #include "sim/kernels.h"
 #include "sim/mesh_wall.h"
 
+/// The overlap of places without a contact [m]. Surfaces that hold on to each other have less of a gap.
+#define DEM_MESH_NO_OVERLAP (-1.0)
+
 /// One ball near one mesh wall.
 typedef struct dem_mesh_touch {
     uint32_t a, sphere, wall;   ///< rows
@@ -62,10 +65,10 @@ void dem_mesh_touch_measure(dem_world *world, size_t begin, size_t end);
 /// Whether none of the 8 contacts from `begin` on is one, so that nothing would come of them.
 static inline bool dem_mesh_block_idle(const dem_contact_columns *c, size_t begin)
 {
-    double most = 0;
+    int some = 0;
     for (size_t i = begin; i < begin + DEM_BLOCK_LANES; i++)
-        most += fabs(c->geometry[0][i]) + fabs(c->geometry[1][i]) + fabs(c->geometry[2][i]);
-    return !(most > 0);
+        some |= c->geometry[3][i] != DEM_MESH_NO_OVERLAP;
+    return !some;
 }
 
 /// The same of all, with the wear that comes of it. Error: DEM_NO_MEMORY.

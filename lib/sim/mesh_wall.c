@@ -289,14 +289,6 @@ static dem_mesh_contact contact_at(const search *s, const candidate *c)
     return (dem_mesh_contact){c->triangle, (dem_triangle_part)c->spot.part, point, offset, normal, distance};
 }
 
-// Is the plane beyond the radius? With room to spare: where rounding has turned the normal of a sliver, it is about its
-// length, and then the plane is off by no more than the sliver is wide.
-static bool is_far(const dem_triangle *t, dem_vec3 centre, double radius2)
-{
-    double height = v3_dot(t->normal, v3_sub(t->a, centre));
-    return height * height > 1.01 * radius2;
-}
-
 // keeps the candidates within the ball at hand if they are few enough
 static void keep(search *s, candidate *room)
 {
@@ -305,7 +297,7 @@ static void keep(search *s, candidate *room)
     for (size_t k = 0; k < s->count; k++) {
         if (count == KEPT)
             return;
-        if (is_far(&s->wall->triangles[s->ids[k]], s->centre, end))
+        if (triangle_is_beyond(&s->wall->triangles[s->ids[k]], s->centre, s->radius))
             continue;
         make_candidate(s, k, &room[count]);
         count += room[count].spot.distance2 < end;
@@ -320,7 +312,7 @@ static int touch_one(const search *s, dem_mesh_contact *contact)
     candidate c;
     make_candidate(s, 0, &c);
     if (!(c.spot.distance2 < s->radius * s->radius) ||
-        is_far(&s->wall->triangles[c.triangle], s->centre, s->radius * s->radius))
+        triangle_is_beyond(&s->wall->triangles[c.triangle], s->centre, s->radius))
         return 0;
     *contact = contact_at(s, &c);
     return 1;
