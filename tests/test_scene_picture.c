@@ -199,6 +199,38 @@ static void walls_are_glass(void **state)
     dem_image_free(&alone);
 }
 
+static void worn_walls_show_how_deep(void **state)
+{
+    (void)state;
+    pair p;
+    dem_view view;
+    make_pair(&p);
+    dem_picture_options o = options_of();
+    // behind the bodies, the right one worn twice as deep; the third wears, but has not
+    const dem_wall_def walls[] = {
+        {.kind = DEM_WALL_DISC, .point = {-2, 1.5, 2.5}, .normal = {0, -1, 0}, .radius = 0.6},
+        {.kind = DEM_WALL_DISC, .point = {2, 1.5, 2.5}, .normal = {0, -1, 0}, .radius = 0.6},
+        {.kind = DEM_WALL_DISC, .point = {0, 1.5, 2.5}, .normal = {0, -1, 0}, .radius = 0.6}};
+    const double worn[3] = {1e-6, 2e-6, 0};
+    dem_wall_view poses[3];
+    for (int i = 0; i < 3; i++)
+        poses[i] = (dem_wall_view){
+            .orientation = {1, 0, 0, 0}, .worn = worn[i], .wear = &worn[i], .wear_count = 1};
+    o.colour = DEM_PICTURE_WEAR;
+    o.walls = walls;
+    o.poses = poses;
+    o.wall_count = 3;
+    o.labels = true;
+    dem_image image = drawn(&p.view, &o, 1, &view);
+    const uint8_t *left = pixel_of(&image, &view, walls[0].point), *right = pixel_of(&image, &view, walls[1].point),
+                  *none = pixel_of(&image, &view, walls[2].point), *body = pixel_of(&image, &view, p.position[0]);
+    check(is_grey(body));
+    check(right[0] > right[2] + 60);              // yellow: the largest depth
+    check(left[1] > left[0] && left[1] > none[1] + 20);  // green: half of it
+    check(none[2] > none[0] && none[2] > none[1]);  // violet: 0
+    dem_image_free(&image);
+}
+
 static void bodies_hide_the_glass_behind_them(void **state)
 {
     (void)state;
@@ -563,6 +595,7 @@ int main(void)
         cmocka_unit_test(colours_show_the_field),
         cmocka_unit_test(the_surface_or_the_spheres_are_drawn),
         cmocka_unit_test(walls_are_glass),
+        cmocka_unit_test(worn_walls_show_how_deep),
         cmocka_unit_test(bodies_hide_the_glass_behind_them),
         cmocka_unit_test(the_edges_of_glass_are_lines),
         cmocka_unit_test(the_picture_is_the_same_for_any_number_of_threads),

@@ -1,51 +1,21 @@
 // Every case of `dem-study verify`, as a test of its own.
-#include "check.h"
+#include "cases.h"
 
 #include "study/verify.h"
-
-enum { CASES = 200 };
-
-static void a_case(void **state)
-{
-    const dem_case *c = *state;
-    if (SLOW_BUILD && c->slow)
-        skip();
-    dem_trial t;
-    dem_trial_run(NULL, c, &t);
-    const char *bounds[] = {"", "at most ", "at least "};
-    for (size_t i = 0; i < t.count; i++) {
-        const dem_finding *f = &t.findings[i];
-        if (!f->passed)
-            print_error("%s: %s = %.12g %s, want %s%.12g within %g\n", c->name, f->what, f->got, f->unit,
-                        bounds[f->bound], f->expected, f->tolerance);
-    }
-    check_ok(t.status, t.error);
-    bool passed = dem_trial_passed(&t), skipped = t.skipped != NULL;
-    dem_trial_release(&t);
-    check(passed);
-    if (skipped)
-        skip();
-}
 
 static void cases_are_found_by_name_and_by_what_their_names_begin_with(void **state)
 {
     (void)state;
     dem_case c = {.name = "chung-ooi-1"}, other = {.name = "chung-ooi-10"};
-    check(dem_verify_meant(&c, "chung-ooi-1") && !dem_verify_meant(&other, "chung-ooi-1"));
-    check(dem_verify_meant(&c, "chung") && dem_verify_meant(&c, "chung-ooi") && !dem_verify_meant(&c, "chu"));
-    check(dem_verify_meant(&other, "chung-ooi-1*") && dem_verify_meant(&c, "*") && !dem_verify_meant(&c, "chung-ooi-"));
+    check(dem_case_meant(&c, "chung-ooi-1") && !dem_case_meant(&other, "chung-ooi-1"));
+    check(dem_case_meant(&c, "chung") && dem_case_meant(&c, "chung-ooi") && !dem_case_meant(&c, "chu"));
+    check(dem_case_meant(&other, "chung-ooi-1*") && dem_case_meant(&c, "*") && !dem_case_meant(&c, "chung-ooi-"));
 }
 
 static void names_are_words_and_each_is_there_once(void **state)
 {
     (void)state;
-    const dem_case *c, *other;
-    for (size_t i = 0; (c = dem_verify_case(i)); i++) {
-        check(c->about && *c->about && c->source && *c->source && c->run);
-        check(strspn(c->name, "abcdefghijklmnopqrstuvwxyz0123456789-") == strlen(c->name));
-        for (size_t k = 0; k < i && (other = dem_verify_case(k)); k++)
-            check(strcmp(c->name, other->name) != 0);
-    }
+    check_names(dem_verify_case);
 }
 
 // what a case whose world cannot be made, or fails, comes to
@@ -89,14 +59,10 @@ static void a_case_that_breaks_or_finds_something_else_has_not_passed(void **sta
 
 int main(void)
 {
-    struct CMUnitTest tests[CASES + 3] = {
+    const struct CMUnitTest tests[] = {
         cmocka_unit_test(cases_are_found_by_name_and_by_what_their_names_begin_with),
         cmocka_unit_test(names_are_words_and_each_is_there_once),
         cmocka_unit_test(a_case_that_breaks_or_finds_something_else_has_not_passed),
     };
-    size_t count = 3;
-    const dem_case *c;
-    for (size_t i = 0; count < CASES && (c = dem_verify_case(i)); i++)
-        tests[count++] = (struct CMUnitTest){c->name, a_case, NULL, NULL, (void *)c};
-    return _cmocka_run_group_tests("cases", tests, count, NULL, NULL);
+    return run_with_cases(tests, sizeof tests / sizeof *tests, dem_verify_case, SLOW_BUILD);
 }

@@ -430,7 +430,7 @@ int main(int argc, char **argv)
         {"label-size", 0, CLI_NUMBER, "PIXELS", "height of a capital letter (default: as the picture needs)",
          &a.label_size, 4, 400},
         {.help = "What is shown"},
-        {"colour", 'c', CLI_TEXT, "FIELD", "what the colours of bodies show (default number)", &a.colour, 0, 0},
+        {"colour", 'c', CLI_TEXT, "FIELD", "what the colours of bodies show, or wear, of walls (default number)", &a.colour, 0, 0},
         {"range", 0, CLI_TEXT, "LOW..HIGH", "values at the ends of the colours, as in \"0..2 mm\" (default: all)",
          &a.range, 0, 0},
         {"map", 0, CLI_CHOICE, "auto|ramp|diverging|warm|grey", "colours of the range (default auto)", &a.map, 0, 0},

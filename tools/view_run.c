@@ -79,6 +79,20 @@ static dem_field_source source_of(const view_run *run)
                               .frame = r->frame.arena.chunks ? &r->frame.vtp : NULL};
 }
 
+// walls by how deep they are worn
+static dem_status choose_wear(view_run *run, dem_error *error)
+{
+    const dem_results *r = &run->results;
+    bool worn = false;
+    for (size_t i = 0; i < run->options.wall_count; i++)
+        worn |= r->walls[i].wear != NULL;
+    if (!worn)
+        return dem_fail(error, DEM_USAGE, "there is no wear to show; give a wall \"wear\" and the scene an interval of "
+                                          "frames (output.frames), and leave --no-walls out");
+    run->options.colour = DEM_PICTURE_WEAR;
+    return view_range(run->choices->arguments->range, "m", &run->options.low, &run->options.high, error);
+}
+
 static dem_status choose_colours(view_run *run, dem_error *error)
 {
     const view_arguments *a = run->choices->arguments;
@@ -86,6 +100,8 @@ static dem_status choose_colours(view_run *run, dem_error *error)
     dem_field_source source = source_of(run);
     const char *name = a->colour ? a->colour : "number";
     o->colour = strcmp(name, "shape") == 0 ? DEM_PICTURE_SHAPE : DEM_PICTURE_NUMBER;
+    if (strcmp(name, "wear") == 0)
+        return choose_wear(run, error);
     if (strcmp(name, "number") == 0 || o->colour == DEM_PICTURE_SHAPE)
         return a->range ? dem_fail(error, DEM_USAGE, "--range needs numbers to show; add --colour, as in speed")
                         : DEM_OK;

@@ -208,28 +208,10 @@ typedef struct wall_cells {
     size_t vertex_room, triangle_room, number_room, volume_room, depth_room;
 } wall_cells;
 
-static double area_of(const dem_mesh *mesh, size_t triangle)
-{
-    const uint32_t *t = &mesh->triangles[3 * triangle];
-    const dem_vec3 *v = mesh->vertices;
-    return v3_norm(v3_cross(v3_sub(v[t[1]], v[t[0]]), v3_sub(v[t[2]], v[t[0]]))) / 2;
-}
-
-// of a smooth wall, evenly over all of it
-static double volume_worn(const dem_mesh *wall, const dem_wall_view *view, size_t triangle, double area)
-{
-    if (view->wear_count == wall->triangle_count)
-        return view->wear[triangle];
-    return area > 0 ? view->worn * area_of(wall, triangle) / area : 0;
-}
-
 static bool append_wall(wall_cells *all, const dem_mesh *wall, int32_t number, const dem_wall_view *view)
 {
-    double whole = 0;
-    for (size_t t = 0; view && view->wear && t < wall->triangle_count; t++)
-        whole += area_of(wall, t);
     dem_mesh *m = &all->mesh;
-    size_t base = m->vertex_count;
+    size_t base = m->vertex_count, first = m->triangle_count;
     for (size_t i = 0; i < wall->vertex_count; i++) {
         if (!dem_grow(&m->vertices, &all->vertex_room, m->vertex_count, sizeof *m->vertices))
             return false;
@@ -241,13 +223,12 @@ static bool append_wall(wall_cells *all, const dem_mesh *wall, int32_t number, c
             !dem_grow(&all->volume, &all->volume_room, m->triangle_count, sizeof *all->volume) ||
             !dem_grow(&all->depth, &all->depth_room, m->triangle_count, sizeof *all->depth))
             return false;
-        double area = area_of(wall, t), volume = whole > 0 ? volume_worn(wall, view, t, whole) : 0;
-        all->volume[m->triangle_count] = volume;
-        all->depth[m->triangle_count] = area > 0 ? volume / area : 0;
         for (size_t k = 3 * t; k < 3 * t + 3; k++)
             m->triangles[3 * m->triangle_count + k - 3 * t] = (uint32_t)(base + wall->triangles[k]);
         all->numbers[m->triangle_count++] = number;
     }
+    if (wall->triangle_count)
+        dem_wall_worn(wall, view, all->volume + first, all->depth + first);
     return true;
 }
 

@@ -68,19 +68,10 @@ typedef struct columns {
     const int32_t *body, *other, *wall;
 } columns;
 
-static const void *find(const dem_vtp *v, const char *name, dem_vtp_type type, int width)
-{
-    for (size_t i = 0; i < v->cell_array_count; i++)
-        if (strcmp(v->cell_arrays[i].name, name) == 0 && v->cell_arrays[i].type == type &&
-            v->cell_arrays[i].width == width)
-            return v->cell_arrays[i].data;
-    return NULL;
-}
-
 static dem_status find_columns(const char *path, const dem_vtp *v, columns *c, dem_error *error)
 {
-    *c = (columns){find(v, "force", DEM_VTP_FLOAT64, 3), find(v, "body", DEM_VTP_INT32, 1),
-                   find(v, "other", DEM_VTP_INT32, 1), find(v, "wall", DEM_VTP_INT32, 1)};
+    *c = (columns){dem_vtp_cells(v, "force", DEM_VTP_FLOAT64, 3), dem_vtp_cells(v, "body", DEM_VTP_INT32, 1),
+                   dem_vtp_cells(v, "other", DEM_VTP_INT32, 1), dem_vtp_cells(v, "wall", DEM_VTP_INT32, 1)};
     bool finite = true;
     for (size_t i = 0; i < v->point_count; i++)
         finite = finite && isfinite(v3_norm2(v->points[i]));
@@ -167,19 +158,16 @@ dem_status dem_links_read(const char *directory, double time, dem_links *l, dem_
     dem_pvd index;
     dem_links_release(l);
     DEM_TRY(dem_pvd_open(directory, "contacts.pvd", INFINITY, &index, error));
-    size_t best = index.count - 1;
-    for (size_t i = 0; i < index.count && !isnan(time); i++)
-        if (fabs(index.entries[i].time - time) < fabs(index.entries[best].time - time))
-            best = i;
+    const dem_pvd_entry *entry = dem_pvd_nearest(&index, time);
     dem_status status = DEM_OK;
-    if (index.count == 0)
+    if (!entry)
         status = dem_fail_at(error, DEM_BAD_INPUT, directory, 0,
                              "has no network of contacts; give the scene an interval of contacts (output.contacts)");
-    char *path = status == DEM_OK ? dem_path_join(directory, "%s", index.entries[best].files[0]) : NULL;
+    char *path = status == DEM_OK ? dem_path_join(directory, "%s", entry->files[0]) : NULL;
     if (status == DEM_OK)
         status = path ? read_file(path, l, error) : dem_fail_memory(error);
     if (status == DEM_OK)
-        l->time = index.entries[best].time;
+        l->time = entry->time;
     for (int i = 0; i < DEM_LINK_SHAPES && status == DEM_OK; i++)
         status = make_rod(SLENDER * pow(STEP, i), &l->shapes[i], error);
     free(path);

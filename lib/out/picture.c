@@ -125,7 +125,7 @@ static void fill_model(const dem_grain_picture *g, const dem_colour *colours, mo
 {
     size_t n = 0;
     if (g->count) {
-        m->shapes[n] = (dem_render_shape){.balls = g->balls, .ball_count = g->count, .ball_colours = colours};
+        m->shapes[n] = (dem_render_shape){.balls = g->balls, .ball_count = g->count, .part_colours = colours};
         m->bodies[n++] = (dem_render_body){.shape = 0, .orientation = {1, 0, 0, 0}, .scale = 1};
     }
     if (has_mesh(g)) {

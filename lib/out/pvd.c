@@ -144,6 +144,15 @@ dem_status dem_pvd_add(dem_pvd *index, double time, const char *file, const char
     return append(index, &entry) ? write_index(index, error) : dem_fail_memory(error);
 }
 
+const dem_pvd_entry *dem_pvd_nearest(const dem_pvd *index, double time)
+{
+    const dem_pvd_entry *best = index->count ? &index->entries[index->count - 1] : NULL;
+    for (size_t i = 0; i < index->count && !isnan(time); i++)
+        if (fabs(index->entries[i].time - time) < fabs(best->time - time))
+            best = &index->entries[i];
+    return best;
+}
+
 void dem_pvd_release(dem_pvd *index)
 {
     free(index->path);

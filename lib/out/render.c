@@ -164,7 +164,7 @@ static dem_colour albedo(const dem_stage *s, const dem_spot *p)
 {
     const dem_render_body *body = &s->scene->bodies[p->body];
     const dem_render_shape *shape = &s->scene->shapes[body->shape];
-    return shape->ball_colours ? shape->ball_colours[p->primitive] : body->colour;
+    return shape->part_colours ? shape->part_colours[p->primitive] : body->colour;
 }
 
 static void spline_weights(float t, float weights[4])

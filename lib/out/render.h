@@ -13,7 +13,7 @@ typedef struct dem_render_shape {
     const dem_mesh *mesh;  ///< NULL: balls
     const dem_ball *balls;
     size_t ball_count;
-    const dem_colour *ball_colours;  ///< one each; NULL: all in the body's colour
+    const dem_colour *part_colours;  ///< one each ball or triangle; NULL: all in the body's colour
 } dem_render_shape;
 
 typedef struct dem_render_body {

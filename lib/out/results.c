@@ -113,11 +113,70 @@ static dem_vec3 shift_of(const dem_results *r, size_t wall)
     return v3(0, 0, 0);
 }
 
+static void release_walls(dem_results *r)
+{
+    for (size_t i = 0; r->worn && i < r->scene.wall_count; i++)
+        free(r->worn[i]);
+    free(r->worn);
+    free(r->walls);
+    r->worn = NULL;
+    r->walls = NULL;
+}
+
+// the triangles of all walls follow each other in the file
+static dem_status take_wear(dem_results *r, const dem_vtp *v, dem_error *error)
+{
+    const int32_t *number = dem_vtp_cells(v, "wall", DEM_VTP_INT32, 1);
+    const double *volume = dem_vtp_cells(v, "wear_volume", DEM_VTP_FLOAT64, 1);
+    for (size_t begin = 0, end; number && volume && begin < v->triangle_count; begin = end) {
+        size_t wall = (size_t)number[begin];
+        for (end = begin + 1; end < v->triangle_count && number[end] == number[begin];)
+            end++;
+        if (number[begin] < 0 || wall >= r->scene.wall_count || r->worn[wall] ||
+            r->scene.walls[wall].wear.law == DEM_WEAR_NONE)
+            continue;
+        r->worn[wall] = dem_alloc(end - begin, sizeof **r->worn);
+        if (!r->worn[wall])
+            return dem_fail_memory(error);
+        memcpy(r->worn[wall], volume + begin, (end - begin) * sizeof *volume);
+        r->walls[wall].wear = r->worn[wall];
+        r->walls[wall].wear_count = end - begin;
+        for (size_t t = begin; t < end; t++)
+            r->walls[wall].worn += volume[t];
+    }
+    return DEM_OK;
+}
+
+// from the file of walls whose time is nearest; a run without frames has none
+static dem_status read_wear(dem_results *r, dem_error *error)
+{
+    dem_pvd index;
+    dem_vtp_file file;
+    DEM_TRY(dem_pvd_open(r->directory, "walls.pvd", INFINITY, &index, error));
+    const dem_pvd_entry *entry = dem_pvd_nearest(&index, r->time);
+    dem_status status = DEM_OK;
+    for (int k = 0; entry && k < DEM_PVD_PARTS && status == DEM_OK; k++) {
+        if (!entry->files[k][0])
+            continue;
+        char *path = dem_path_join(r->directory, "%s", entry->files[k]);
+        status = path ? dem_vtp_read(path, &file, error) : dem_fail_memory(error);
+        free(path);
+        if (status != DEM_OK)
+            break;
+        status = take_wear(r, &file.vtp, error);
+        dem_vtp_file_release(&file);
+    }
+    dem_pvd_release(&index);
+    return status;
+}
+
 static dem_status place_walls(dem_results *r, dem_error *error)
 {
-    free(r->walls);
+    bool wears = false;
+    release_walls(r);
     r->walls = dem_alloc_zero(r->scene.wall_count, sizeof *r->walls);
-    if (!r->walls)
+    r->worn = dem_alloc_zero(r->scene.wall_count, sizeof *r->worn);
+    if (!r->walls || !r->worn)
         return dem_fail_memory(error);
     for (size_t i = 0; i < r->scene.wall_count; i++) {
         const dem_wall_def *w = &r->scene.walls[i];
@@ -125,8 +184,9 @@ static dem_status place_walls(dem_results *r, dem_error *error)
         dem_wall_motion motion = dem_wall_motion_of(w);
         dem_wall_moment now = dem_wall_motion_at(&motion, time);
         r->walls[i].position = dem_wall_pose(&motion, &now, shift_of(r, i), &r->walls[i].orientation);
+        wears |= w->wear.law != DEM_WEAR_NONE;
     }
-    return DEM_OK;
+    return wears ? read_wear(r, error) : DEM_OK;
 }
 
 static dem_status fill_view(dem_results *r, const dem_body_def *defs, size_t n, dem_error *error)
@@ -322,7 +382,7 @@ void dem_results_release(dem_results *r)
     release_bodies(r);
     free(r->clumps);
     free(r->diameters);
-    free(r->walls);
+    release_walls(r);
     free(r->directory);
     dem_pvd_release(&r->index);
     dem_scene_release(&r->scene);

@@ -16,7 +16,8 @@ typedef struct dem_results {
     double end;            ///< time of the last state [s]; NAN: not known
     dem_pvd index;         ///< frames and their times, ascending
     dem_body_view bodies;  ///< of what was read last; a column that is not known is NULL
-    dem_wall_view *walls;  ///< poses of the scene's walls at that time
+    dem_wall_view *walls;  ///< poses of the scene's walls at that time, and what is worn off those that wear
+    double **worn;         ///< the arrays of that
     double time;           ///< of the bodies [s]; NAN: not known
     dem_vtp_file frame;    ///< what was read, where that is a frame
 } dem_results;

@@ -31,6 +31,8 @@ typedef struct model {
     dem_clump_def *clumps;
     double *radii, *diameters;  // of the shapes: of a ball about the centre of mass; of equal volume [m]
     dem_mesh *walls;
+    double **depths;            // worn off their triangles [m]; NULL: nothing is worn, or it is not shown
+    dem_colour **wall_colours;  // of their triangles
     dem_render_shape *shapes;
     dem_render_body *bodies;
     size_t shape_count, body_count, glass;  // of the clumps; those that are shown; walls that are not the ground
@@ -80,9 +82,12 @@ static dem_status make_room(model *m, const dem_clump *const *shapes, size_t sha
     m->radii = dem_alloc_zero(shape_count, sizeof *m->radii);
     m->diameters = dem_alloc_zero(shape_count, sizeof *m->diameters);
     m->walls = dem_alloc_zero(walls, sizeof *m->walls);
+    m->depths = dem_alloc_zero(walls, sizeof *m->depths);
+    m->wall_colours = dem_alloc_zero(walls, sizeof *m->wall_colours);
     m->shapes = dem_alloc_zero(shape_count + walls, sizeof *m->shapes);
     m->bodies = dem_alloc_zero(m->view->count + walls, sizeof *m->bodies);
-    if (!m->clumps || !m->radii || !m->diameters || !m->walls || !m->shapes || !m->bodies)
+    if (!m->clumps || !m->radii || !m->diameters || !m->walls || !m->depths || !m->wall_colours ||
+        !m->shapes || !m->bodies)
         return dem_fail_memory(error);
     for (size_t i = 0; i < shape_count; i++) {
         m->clumps[i] = dem_clump_view(shapes[i]);
@@ -93,8 +98,13 @@ static dem_status make_room(model *m, const dem_clump *const *shapes, size_t sha
 
 static void clear_walls(model *m)
 {
-    for (size_t i = 0; m->walls && i < m->options->wall_count; i++)
+    for (size_t i = 0; m->walls && m->depths && m->wall_colours && i < m->options->wall_count; i++) {
         dem_mesh_free(&m->walls[i]);
+        free(m->depths[i]);
+        free(m->wall_colours[i]);
+        m->depths[i] = NULL;
+        m->wall_colours[i] = NULL;
+    }
 }
 
 static void release(model *m)
@@ -105,11 +115,25 @@ static void release(model *m)
     free(m->radii);
     free(m->diameters);
     free(m->walls);
+    free(m->depths);
+    free(m->wall_colours);
     free(m->shapes);
     free(m->bodies);
 }
 
 // ---- bodies
+
+// what is shown is not of bodies
+static dem_status no_values(model *m, dem_error *error)
+{
+    m->field = (dem_field){.unit = "m", .title = "wear depth"};
+    m->field.values = dem_alloc(m->view->count, sizeof *m->field.values);
+    if (!m->field.values)
+        return dem_fail_memory(error);
+    for (size_t i = 0; i < m->view->count; i++)
+        m->field.values[i] = NAN;
+    return DEM_OK;
+}
 
 static dem_status find_values(model *m, dem_error *error)
 {
@@ -119,6 +143,8 @@ static dem_status find_values(model *m, dem_error *error)
     m->field = (dem_field){.unit = ""};
     if (name)
         return dem_field_make(name, &source, &m->field, error);
+    if (o->colour == DEM_PICTURE_WEAR)
+        return no_values(m, error);
     if (o->colour != DEM_PICTURE_VALUES)
         return DEM_OK;
     if (!o->values)
@@ -139,12 +165,17 @@ static dem_colour colour_of_shape(size_t shape)  // the golden section takes hue
     return dem_colour_lch(0.72, 0.085, 0.14 + 0.618033988749895 * (double)shape);
 }
 
+static dem_colour colour_of_value(const model *m, double value)
+{
+    value -= m->low;
+    return dem_palette_at(&m->palette, m->high > m->low ? value / (m->high - m->low) : value);
+}
+
 static dem_colour colour_of(const model *m, size_t i)
 {
     if (!m->field.values)
         return m->options->colour == DEM_PICTURE_SHAPE ? colour_of_shape(m->view->shape[i]) : dem_colour_of_number(i);
-    double value = m->field.values[i] - m->low;
-    return dem_palette_at(&m->palette, m->high > m->low ? value / (m->high - m->low) : value);
+    return colour_of_value(m, m->field.values[i]);
 }
 
 static bool is_hidden(const model *m, size_t i)
@@ -189,6 +220,44 @@ static bool is_ground(const model *m, size_t wall, double *height)
     return def->kind == DEM_WALL_PLANE && v3_dot(n, m->up) > LEVEL;
 }
 
+// of a wall that wears, where that is shown
+static dem_status find_depths(model *m, size_t wall, dem_error *error)
+{
+    const dem_picture_options *o = m->options;
+    size_t count = m->walls[wall].triangle_count;
+    if (o->colour != DEM_PICTURE_WEAR || !o->poses || !o->poses[wall].wear || !count)
+        return DEM_OK;
+    m->depths[wall] = dem_alloc(count, sizeof *m->depths[wall]);
+    m->wall_colours[wall] = dem_alloc(count, sizeof *m->wall_colours[wall]);
+    if (!m->depths[wall] || !m->wall_colours[wall])
+        return dem_fail_memory(error);
+    dem_wall_worn(&m->walls[wall], &o->poses[wall], NULL, m->depths[wall]);
+    return DEM_OK;
+}
+
+static void include_depths(const model *m, double *low, double *high)
+{
+    for (size_t i = 0; i < m->options->wall_count; i++)
+        for (size_t t = 0; m->depths[i] && t < m->walls[i].triangle_count; t++) {
+            *low = 0;
+            *high = fmax(*high, m->depths[i][t]);
+        }
+}
+
+// solid and in the colours of the range, which is known by now
+static void colour_walls(model *m)
+{
+    for (size_t i = 0; i < m->options->wall_count; i++) {
+        for (size_t t = 0; m->depths[i] && t < m->walls[i].triangle_count; t++)
+            m->wall_colours[i][t] = colour_of_value(m, m->depths[i][t]);
+        for (size_t k = m->shape_count; m->depths[i] && k < m->shape_count + m->options->wall_count; k++)
+            if (m->shapes[k].mesh == &m->walls[i]) {
+                m->shapes[k].part_colours = m->wall_colours[i];
+                m->bodies[m->body_count + k - m->shape_count].clear = 0;
+            }
+    }
+}
+
 // those that are the ground come last, so that they can be counted for the camera and then left out
 static dem_status place_walls(model *m, dem_box bodies, dem_error *error)
 {
@@ -199,8 +268,9 @@ static dem_status place_walls(model *m, dem_box bodies, dem_error *error)
     m->ground = INFINITY;
     for (size_t i = 0; i < o->wall_count; i++) {
         DEM_TRY(dem_wall_mesh(&o->walls[i], o->poses ? &o->poses[i] : NULL, box, &m->walls[i], error));
+        DEM_TRY(find_depths(m, i, error));
         double height;
-        bool floor = is_ground(m, i, &height);
+        bool floor = is_ground(m, i, &height) && !m->depths[i];
         m->ground = floor ? fmin(m->ground, height) : m->ground;
         size_t place = floor ? o->wall_count - ++floors : m->glass++;
         m->shapes[m->shape_count + place].mesh = &m->walls[i];
@@ -402,6 +472,7 @@ static dem_status measure(model *m, const layout *l, dem_picture_span *span, dem
     span->end = fmax(span->end, o->time);
     place_bodies(m);
     DEM_TRY(place_walls(m, span->bodies, error));
+    include_depths(m, &span->low, &span->high);
     const dem_render_scene all = {
         m->shapes, m->shape_count + o->wall_count, m->bodies, m->body_count + o->wall_count, NULL, 0};
     dem_fit_add(&span->fit, &all);
@@ -434,6 +505,7 @@ static dem_status draw(const dem_ctx *ctx, model *m, const layout *l, const dem_
     clear_walls(m);
     place_bodies(m);
     DEM_TRY(place_walls(m, span->bodies, error));
+    colour_walls(m);
     const dem_render_scene seen = {
         m->shapes, m->shape_count + o->wall_count, m->bodies, m->body_count + m->glass, &background, o->samples};
     *view = choose_view(m, span);

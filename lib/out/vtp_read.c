@@ -316,6 +316,15 @@ const dem_vtp_array *dem_vtp_find(const dem_vtp *vtp, const char *name)
     return NULL;
 }
 
+const void *dem_vtp_cells(const dem_vtp *v, const char *name, dem_vtp_type type, int width)
+{
+    for (size_t i = 0; i < v->cell_array_count; i++)
+        if (strcmp(v->cell_arrays[i].name, name) == 0 && v->cell_arrays[i].type == type &&
+            v->cell_arrays[i].width == width)
+            return v->cell_arrays[i].data;
+    return NULL;
+}
+
 double dem_vtp_value(const dem_vtp_array *a, size_t point, int component)
 {
     size_t at = point * (size_t)a->width + (size_t)component;

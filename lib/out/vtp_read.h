@@ -20,6 +20,9 @@ void dem_vtp_file_release(dem_vtp_file *file);
 /// The point array of a name; NULL: there is none.
 const dem_vtp_array *dem_vtp_find(const dem_vtp *vtp, const char *name);
 
+/// The numbers of the cell array of a name, a type and a width; NULL: there is none.
+const void *dem_vtp_cells(const dem_vtp *vtp, const char *name, dem_vtp_type type, int width);
+
 /// A number of an array, by point and component.
 double dem_vtp_value(const dem_vtp_array *array, size_t point, int component);
 

@@ -302,3 +302,28 @@ dem_status dem_wall_mesh(const dem_wall_def *wall, const dem_wall_view *pose, de
         return plane_mesh(point, normal, box, mesh, error);
     return cylinder_mesh(wall, point, normal, box, mesh, error);
 }
+
+// ---- what is worn off
+
+static double area_of(const dem_mesh *mesh, size_t triangle)
+{
+    const uint32_t *t = &mesh->triangles[3 * triangle];
+    const dem_vec3 *v = mesh->vertices;
+    return v3_norm(v3_cross(v3_sub(v[t[1]], v[t[0]]), v3_sub(v[t[2]], v[t[0]]))) / 2;
+}
+
+void dem_wall_worn(const dem_mesh *mesh, const dem_wall_view *view, double *volume, double *depth)
+{
+    double whole = 0;
+    for (size_t t = 0; view && view->wear && t < mesh->triangle_count; t++)
+        whole += area_of(mesh, t);
+    for (size_t t = 0; t < mesh->triangle_count; t++) {
+        double area = area_of(mesh, t), worn = 0;
+        if (whole > 0)
+            worn = view->wear_count == mesh->triangle_count ? view->wear[t] : view->worn * area / whole;
+        if (volume)
+            volume[t] = worn;
+        if (depth)
+            depth[t] = area > 0 ? worn / area : 0;
+    }
+}

@@ -21,4 +21,8 @@ dem_box dem_walls_box(const dem_domain_def *domain, dem_box bodies, const dem_wa
 dem_status dem_wall_mesh(const dem_wall_def *wall, const dem_wall_view *pose, dem_box box, dem_mesh *mesh,
                          dem_error *error);
 
+/// What was worn off each triangle of such a mesh: volume [m^3] and depth [m]; of a smooth wall evenly over all of it.
+/// `view` (may be NULL: nothing) is of the wall. Either array may be NULL.
+void dem_wall_worn(const dem_mesh *mesh, const dem_wall_view *view, double *volume, double *depth);
+
 #endif

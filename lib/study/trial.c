@@ -4,6 +4,7 @@
 #include <stdarg.h>
 #include <stdio.h>
 #include <stdlib.h>
+#include <string.h>
 
 #include "base/memory.h"
 #include "sim/state.h"
@@ -35,9 +36,21 @@ bool dem_trial_passed(const dem_trial *t)
     return passed;
 }
 
+bool dem_case_meant(const dem_case *c, const char *word)
+{
+    size_t length = strlen(word);
+    if (length && word[length - 1] == '*')
+        return strncmp(c->name, word, length - 1) == 0;
+    return strncmp(c->name, word, length) == 0 && (c->name[length] == 0 || c->name[length] == '-');
+}
+
 void dem_trial_release(dem_trial *t)
 {
     free(t->findings);
+    for (size_t i = 0; i < t->curve_count; i++) {
+        free(t->curves[i].x);
+        free(t->curves[i].y);
+    }
     *t = (dem_trial){0};
 }
 
@@ -175,4 +188,34 @@ void dem_expect_least(dem_trial *t, double got, double bound, const char *unit, 
     va_start(arguments, format);
     note(t, (dem_finding){"", unit, DEM_BOUND_LEAST, bound, got, 0, got >= bound}, format, arguments);
     va_end(arguments);
+}
+
+void dem_trial_plot(dem_trial *t, dem_plot_axis x, dem_plot_axis y)
+{
+    t->axes[0] = x;
+    t->axes[1] = y;
+}
+
+void dem_trial_point(dem_trial *t, const char *curve, double x, double y)
+{
+    dem_curve *c = t->curve_count ? &t->curves[t->curve_count - 1] : NULL;
+    if (t->status != DEM_OK)
+        return;
+    if (!c || strcmp(c->name, curve) != 0) {
+        DEM_ASSERT(t->curve_count < DEM_CURVES);
+        c = &t->curves[t->curve_count++];
+        snprintf(c->name, sizeof c->name, "%s", curve);
+    }
+    if (!dem_grow(&c->x, &c->capacity[0], c->count, sizeof *c->x) ||
+        !dem_grow(&c->y, &c->capacity[1], c->count, sizeof *c->y)) {
+        t->status = dem_fail_memory(&t->error);
+        return;
+    }
+    size_t at = c->count++;
+    for (; at > 0 && c->x[at - 1] > x; at--) {
+        c->x[at] = c->x[at - 1];
+        c->y[at] = c->y[at - 1];
+    }
+    c->x[at] = x;
+    c->y[at] = y;
 }

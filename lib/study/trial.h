@@ -7,6 +7,7 @@
 #define DEM_STUDY_TRIAL_H
 
 #include "dem/world.h"
+#include "out/plot.h"
 #include "study/model.h"
 
 typedef enum dem_bound { DEM_BOUND_NEAR, DEM_BOUND_MOST, DEM_BOUND_LEAST } dem_bound;
@@ -21,6 +22,15 @@ typedef struct dem_finding {
     bool passed;
 } dem_finding;
 
+/// Points of a plot that goes with the findings.
+typedef struct dem_curve {
+    char name[40];
+    double *x, *y;
+    size_t count, capacity[2];
+} dem_curve;
+
+enum { DEM_CURVES = 8 };
+
 typedef struct dem_trial {
     const dem_ctx *ctx;
     model *model;      ///< of dem_trial_model
@@ -29,6 +39,9 @@ typedef struct dem_trial {
     uint64_t unasked;  ///< steps since the caller was asked whether to go on
     dem_finding *findings;
     size_t count, capacity;
+    dem_plot_axis axes[2];  ///< of the plot; titles NULL: none
+    dem_curve curves[DEM_CURVES];
+    size_t curve_count;
     const char *skipped;  ///< why the case cannot be tried in this build; NULL: it was
     dem_status status;
     dem_error error;
@@ -48,6 +61,8 @@ typedef struct dem_case {
 void dem_trial_run(const dem_ctx *ctx, const dem_case *c, dem_trial *trial);
 /// Whether it ran to its end and all it found is as expected.
 bool dem_trial_passed(const dem_trial *trial);
+/// Whether a case is meant by a word: its name, or what comes before a '-' or '*' of it ("jkr", "chung-ooi-4").
+bool dem_case_meant(const dem_case *c, const char *word);
 void dem_trial_release(dem_trial *trial);
 
 // ---- for cases
@@ -83,5 +98,10 @@ void dem_expect_most(dem_trial *trial, double got, double bound, const char *uni
     DEM_PRINTF(5, 6);
 void dem_expect_least(dem_trial *trial, double got, double bound, const char *unit, const char *format, ...)
     DEM_PRINTF(5, 6);
+
+/// Says what the plot of the case shows.
+void dem_trial_plot(dem_trial *trial, dem_plot_axis x, dem_plot_axis y);
+/// A point of one of its curves, the last or a new one; they are put in order of x.
+void dem_trial_point(dem_trial *trial, const char *curve, double x, double y);
 
 #endif

@@ -1,7 +1,5 @@
 #include "study/verify.h"
 
-#include <string.h>
-
 static const dem_case *const parts[] = {
     dem_verify_chung_ooi,
     dem_verify_impacts,
@@ -26,12 +24,4 @@ const dem_case *dem_verify_case(size_t index)
             if (index-- == 0)
                 return c;
     return NULL;
-}
-
-bool dem_verify_meant(const dem_case *c, const char *word)
-{
-    size_t length = strlen(word);
-    if (length && word[length - 1] == '*')
-        return strncmp(c->name, word, length - 1) == 0;
-    return strncmp(c->name, word, length) == 0 && (c->name[length] == 0 || c->name[length] == '-');
 }

@@ -6,8 +6,6 @@
 
 /// NULL behind the last.
 const dem_case *dem_verify_case(size_t index);
-/// Whether a case is meant by a word: its name, or what comes before a '-' or '*' of it ("jkr", "chung-ooi-4").
-bool dem_verify_meant(const dem_case *c, const char *word);
 
 /// The parts of the table, each of one file; a part ends with a case without a name.
 extern const dem_case dem_verify_chung_ooi[], dem_verify_impacts[], dem_verify_sliding[], dem_verify_rotation[],

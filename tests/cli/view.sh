@@ -186,6 +186,17 @@ cmp -s a.png sheet.png && fail "--no-names changes nothing"
 run 2 dem-view "$clumps" -o a.png --size 20x20
 mentions 'do not fit into 20 x 20 pixels; give a larger --size'
 
+# ---- wear
+run 2 dem-view results -o a.png --colour wear
+mentions 'there is no wear to show; give a wall "wear"'
+sed 's|"normal": \[0, 0, -1\] }, "material": "stone",|"normal": [0, 0, -1], "radius": "0.2 m" }, "material": "stone",\
+         "wear": { "law": "finnie", "pressure": "1 GPa", "constant": 2 },|' scene.json >worn.json
+run 0 dem-run worn.json -q -o worn -D time.end=0.1 -D 'bodies.0.velocity=[1, 0, 1]'
+run 0 dem-view worn -o worn.png $small --colour wear
+prints '^worn.png: [0-9]+ bodies at t = '
+run 0 dem-view worn -o fresh.png $small --colour wear --frame 0 --range 0..1nm
+cmp -s worn.png fresh.png && fail "wear does not show"
+
 # ---- contacts
 run 3 dem-view results -o a.png --contacts
 mentions 'has no network of contacts; give the scene an interval of contacts'

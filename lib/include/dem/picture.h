@@ -27,6 +27,7 @@ typedef enum dem_picture_colour {
     DEM_PICTURE_COORDINATION,
     DEM_PICTURE_HEIGHT,
     DEM_PICTURE_VALUES,  ///< `values` of the options
+    DEM_PICTURE_WEAR,    ///< depth to which walls are worn, as `poses` has it; bodies are grey
 } dem_picture_colour;
 
 /// Colours of a range of values, in steps that look equal.

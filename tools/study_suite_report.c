@@ -5,11 +5,11 @@
 
 #include "dem/base.h"
 #include "out/page.h"
-#include "study_verify.h"
+#include "study_suite.h"
 
-verified_counts verified_count(const verified *items, size_t count)
+suite_counts suite_count(const tried *items, size_t count)
 {
-    verified_counts c = {0};
+    suite_counts c = {0};
     for (size_t i = 0; i < count; i++) {
         if (!items[i].ran)
             continue;
@@ -22,7 +22,7 @@ verified_counts verified_count(const verified *items, size_t count)
     return c;
 }
 
-static const char *verdict_of(const verified *v)
+static const char *verdict_of(const tried *v)
 {
     return v->trial.skipped ? "skipped" : dem_trial_passed(&v->trial) ? "passed" : "FAILED";
 }
@@ -57,11 +57,11 @@ static void text_finding(dem_buffer *out, const dem_finding *f)
                      tolerance(a[2], f), f->unit, f->passed ? "" : "FAILED");
 }
 
-void verified_text(dem_buffer *out, const verified *items, size_t count, bool all)
+void suite_text(dem_buffer *out, const tried *items, size_t count, bool all)
 {
     bool head = false;
     for (size_t i = 0; i < count; i++) {
-        const verified *v = &items[i];
+        const tried *v = &items[i];
         const dem_trial *t = &v->trial;
         if (!v->ran)
             continue;
@@ -81,7 +81,7 @@ void verified_text(dem_buffer *out, const verified *items, size_t count, bool al
         if (t->status != DEM_OK)
             dem_buffer_print(out, "  stopped: %s\n", t->error.text);
     }
-    verified_counts c = verified_count(items, count);
+    suite_counts c = suite_count(items, count);
     dem_buffer_print(out, "%zu case%s, %zu figures: %zu passed, %zu failed, %zu skipped\n", c.cases,
                      c.cases == 1 ? "" : "s", c.findings, c.passed, c.failed, c.skipped);
 }
@@ -95,7 +95,7 @@ static void csv_text(dem_buffer *out, const char *text)
     dem_buffer_print(out, plain ? "%s" : "\"%s\"", text);
 }
 
-void verified_csv(dem_buffer *out, const verified *items, size_t count)
+void suite_csv(dem_buffer *out, const tried *items, size_t count)
 {
     static const char *const bounds[] = {"near", "at most", "at least"};
     dem_buffer_text(out, "case,what,unit,bound,expected,got,tolerance,verdict,source\n");
@@ -119,12 +119,12 @@ void verified_csv(dem_buffer *out, const verified *items, size_t count)
 
 // ---- page
 
-static void page_overview(dem_buffer *out, const verified *items, size_t count)
+static void page_overview(dem_buffer *out, const tried *items, size_t count)
 {
     static const char *const heads[] = {"case", "what", "expected from", "figures", "seconds", "verdict"};
     dem_page_table_begin(out, NULL, heads, sizeof heads / sizeof *heads);
     for (size_t i = 0; i < count; i++) {
-        const verified *v = &items[i];
+        const tried *v = &items[i];
         char text[32];
         if (!v->ran)
             continue;
@@ -141,7 +141,22 @@ static void page_overview(dem_buffer *out, const verified *items, size_t count)
     dem_page_table_end(out);
 }
 
-static void page_case(dem_buffer *out, const verified *v)
+static void page_plot(dem_buffer *out, const dem_trial *t)
+{
+    dem_plot_series series[DEM_CURVES];
+    if (!t->axes[0].title || !t->curve_count)
+        return;
+    for (size_t i = 0; i < t->curve_count; i++) {
+        const dem_curve *c = &t->curves[i];
+        series[i] = (dem_plot_series){.name = c->name, .x = c->x, .y = c->y, .count = c->count};
+    }
+    dem_plot plot = {.x = t->axes[0], .y = t->axes[1], .series = series, .series_count = t->curve_count};
+    dem_page_figure_begin(out);
+    dem_plot_sheet_draw(out, &(dem_plot_sheet){.plots = &plot, .count = 1, .columns = 1, .fragment = true});
+    dem_page_figure_end(out, NULL);
+}
+
+static void page_case(dem_buffer *out, const tried *v)
 {
     static const char *const heads[] = {"figure", "expected", "got", "tolerance", "unit", "verdict"};
     char text[3][32], caption[300];
@@ -160,23 +175,24 @@ static void page_case(dem_buffer *out, const verified *v)
         dem_page_row_end(out);
     }
     dem_page_table_end(out);
+    page_plot(out, &v->trial);
     if (v->trial.skipped)
         dem_page_paragraph(out, v->trial.skipped);
     if (v->trial.status != DEM_OK)
         dem_page_paragraph(out, v->trial.error.text);
 }
 
-void verified_page(dem_buffer *out, const verified *items, size_t count)
+void suite_page(dem_buffer *out, const suite *s, const tried *items, size_t count)
 {
-    verified_counts c = verified_count(items, count);
+    suite_counts c = suite_count(items, count);
     char text[200];
-    snprintf(text, sizeof text, "%zu cases with a known answer, %zu figures: %zu passed, %zu failed, %zu skipped",
-             c.cases, c.findings, c.passed, c.failed, c.skipped);
-    dem_page_begin(out, "Verification", text);
+    snprintf(text, sizeof text, "%zu %s, %zu figures: %zu passed, %zu failed, %zu skipped",
+             c.cases, s->cases, c.findings, c.passed, c.failed, c.skipped);
+    dem_page_begin(out, s->title, text);
     page_overview(out, items, count);
     for (size_t i = 0; i < count; i++)
         if (items[i].ran)
             page_case(out, &items[i]);
-    snprintf(text, sizeof text, "dem-study verify, dem-clump %s", dem_version());
+    snprintf(text, sizeof text, "%s, dem-clump %s", s->tool, dem_version());
     dem_page_end(out, text);
 }
