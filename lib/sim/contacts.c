@@ -61,13 +61,18 @@ static bool move_columns(const dem_features *f, dem_contacts *contacts, const de
 dem_status dem_contacts_create(dem_world *w, dem_contacts *contacts, int form, dem_error *error)
 {
     *contacts = (dem_contacts){.segments = dem_alloc_zero(w->segment_count, sizeof *contacts->segments)};
-    if (!contacts->segments || !move_columns(&w->features, contacts, contacts->segments, w->segment_count, 0, form))
+    if (w->features.soft)
+        contacts->runs = dem_alloc_zero(w->segment_count, sizeof *contacts->runs);
+    if (!contacts->segments || (w->features.soft && !contacts->runs) || !move_columns(&w->features, contacts, contacts->segments, w->segment_count, 0, form))
         return dem_fail_memory(error);
     return DEM_OK;
 }
 
-void dem_contacts_release(dem_contacts *contacts)
+void dem_contacts_release(dem_contacts *contacts, size_t segments)
 {
+    for (size_t i = 0; contacts->runs && i < segments; i++)
+        dem_soft_runs_release(&contacts->runs[i]);
+    free(contacts->runs);
 #define COLUMN(type, name, unit, when, about) free(contacts->columns.name);
     DEM_CONTACT_COLUMNS(COLUMN)
 #undef COLUMN
@@ -241,6 +246,13 @@ static void take_history(const dem_world *w, const dem_segment *s, const dem_pai
     item->old = (uint32_t)(at - s->begin) + 1;
 }
 
+// what the first one of the pair remembers stands for all
+static void take_soft_history(const dem_world *w, const dem_segment *s, const dem_pair *p, dem_contact_item *item)
+{
+    if (p->count)
+        item->history = dem_history_get(&w->contacts.columns, segment_place(s, p->start));
+}
+
 static bool add_item(list *l, const dem_contact_item *item)
 {
     if (!dem_grow(&l->items, &l->capacity, l->count, sizeof *l->items))
@@ -272,7 +284,10 @@ static bool list_pair(const dem_world *w, const dem_segment *s, dem_pair *p, con
                                      .sphere_b = b->first + pairs[2 * i + 1],
                                      .shift = p->image,
                                      .law = w->laws.table[a->material * w->laws.material_count + b->material]};
-            take_history(w, s, p, &item, &old);
+            if (!w->features.soft)
+                take_history(w, s, p, &item, &old);
+            else if (i == 0)
+                take_soft_history(w, s, p, &item);
             if (!add_item(l, &item))
                 return false;
         }
@@ -326,7 +341,7 @@ static bool rebuild_segment(dem_world *w, size_t segment, list *l)
             return false;
     if (!dem_extras_keep(&l->extras, s, l->items, l->count, &l->kept))
         return false;
-    s->end = s->begin + l->count;
+    segment_set_end(s, l->count, w->features.soft);
     for (size_t k = 0; k < l->count; k++)
         dem_contact_put(&w->contacts.columns, segment_place(s, k), &l->items[k]);
     dem_extras_give(&l->extras, s, l->count, l->count, &l->kept);

@@ -57,7 +57,7 @@
     X(double, reaction[1], "N", f->reaction && walls, "force of the wall, y")                                          \
     X(double, reaction[2], "N", f->reaction && walls, "force of the wall, z")                                          \
     X(double, hardness, "N/m", f->reaction && walls, "stiffness and dashpot over the step")                            \
-    X(double, weight, "-", f->weighted, "share of the force that counts")                                              \
+    X(double, weight, "-", f->weighted || f->soft, "share of the force that counts, or of the soft maximum")           \
     X(double, geometry[0], "-", mesh, "normal, x")                                                                     \
     X(double, geometry[1], "-", mesh, "normal, y")                                                                     \
     X(double, geometry[2], "-", mesh, "normal, z")                                                                     \
@@ -74,7 +74,7 @@ static inline int dem_user_columns(const dem_features *f)
 
 /// Empty columns and segments for a world's pairs (form -1) or walls of one form.
 dem_status dem_contacts_create(dem_world *world, dem_contacts *contacts, int form, dem_error *error);
-void dem_contacts_release(dem_contacts *contacts);
+void dem_contacts_release(dem_contacts *contacts, size_t segments);
 
 /// Makes room for `needed[segment]` contacts in every dirty segment.
 bool dem_contacts_reserve(dem_world *world, dem_contacts *contacts, int form, const size_t *needed);

@@ -12,6 +12,7 @@ enum { PAIRS_TO_SHARE = 256 };  // expired pairs that are worth more than one th
 static const double HORIZON = 80;                             // steps that a margin should last
 static const double MARGIN_LEAST = 0.01, MARGIN_MOST = 0.15;  // of the length that suits the shape
 static const double REACH_SHARE = 0.4;                        // of the bounding radius, that length at least
+static const double SOFT_SHARE = 0.5;                         // of what soft contacts look ahead, at least: found by trial
 static const float HEIGHT_ERROR = 4e-6f;                      // of the bounding radii: what 32 bits may be off by
 
 static double margin_length(const dem_world *w, size_t row)
@@ -25,7 +26,7 @@ double dem_refresh_margin(const dem_world *w, size_t a, size_t b, double strides
     double length = smaller(margin_length(w, a), margin_length(w, b));
     double margin = larger(MARGIN_LEAST * length, smaller(MARGIN_MOST * length, HORIZON * strides));
     // surfaces that hold on to each other stay in sight
-    return larger(margin, 1.1 * w->reach);
+    return larger(margin, larger(1.1 * w->reach, SOFT_SHARE * w->ahead));
 }
 
 double dem_refresh_limit(const dem_world *w, size_t row)

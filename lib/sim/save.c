@@ -281,7 +281,7 @@ static void pass_contacts(cursor *c, dem_world *w, dem_contacts *contacts, int f
         c->failed = !dem_contacts_reserve(w, contacts, form, needed);
     for (size_t i = 0; i < w->segment_count && !c->failed; i++) {
         dem_segment *s = &contacts->segments[i];
-        s->end = s->begin + needed[i];
+        segment_set_end(s, needed[i], w->features.soft);
         if (!c->out)
             s->dirty = false;
 #define COLUMN(type, name, unit, when, about)                                                                          \

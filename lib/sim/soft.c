@@ -90,7 +90,7 @@ static dem_status make_weights(dem_world *w, dem_error *error)
             rungs[count++] = (rung){shape, step, (uint32_t)filled};
             filled += t->count;
         }
-        w->soft.first[row] = rungs[k].first;
+        w->soft.first[row] = rungs[k].first - t->first;
     }
     w->soft.table_count = count;
     free(rungs);
@@ -148,35 +148,101 @@ dem_status dem_soft_create(dem_world *w, double tau, dem_error *error)
     return make_weights(w, error);
 }
 
+static void release_work(dem_soft_work *work)
+{
+    void *all[] = {work->rows, work->overlap, work->place, work->sorted, work->patches};
+    for (size_t i = 0; i < sizeof all / sizeof *all; i++)
+        free(all[i]);
+    *work = (dem_soft_work){0};
+}
+
+static bool reserve_work(dem_soft_work *work, size_t capacity)
+{
+    release_work(work);
+    work->rows = aligned_alloc(64, 2 * capacity * DEM_ROW * sizeof *work->rows);
+    work->overlap = dem_alloc(capacity, sizeof *work->overlap);
+    work->place = dem_alloc(2 * capacity, sizeof *work->place);
+    work->sorted = dem_alloc(capacity, sizeof *work->sorted);
+    work->patches = dem_alloc(capacity, sizeof *work->patches);
+    return work->rows && work->overlap && work->place && work->sorted && work->patches;
+}
+
 void dem_soft_release(dem_world *w)
 {
     for (int t = 0; w->soft.work && t < w->threads; t++)
-        free(w->soft.work[t]);
+        release_work(&w->soft.work[t]);
     free(w->soft.work);
     free(w->soft.weights);
     free(w->soft.first);
     free(w->soft.radius);
 }
 
+void dem_soft_runs_release(dem_soft_runs *runs)
+{
+    free(runs->first);
+    free(runs->rise);
+}
+
+static bool add_run(dem_soft_runs *runs, size_t first)
+{
+    if (!dem_grow(&runs->first, &runs->capacity, runs->count, sizeof *runs->first) ||
+        !dem_grow(&runs->rise, &runs->rise_capacity, runs->count, sizeof *runs->rise))
+        return false;
+    runs->rise[runs->count] = 0;
+    runs->first[runs->count++] = (uint32_t)first;
+    return true;
+}
+
+static bool same_bodies(const dem_contact_columns *c, size_t i, size_t k, bool wall)
+{
+    if (wall)
+        return c->a[i] == c->a[k] && c->sphere_b[i] == c->sphere_b[k];
+    return c->a[i] == c->a[k] && c->b[i] == c->b[k] && !(c->shift && c->shift[i] != c->shift[k]);
+}
+
+static bool find_runs(const dem_world *w, dem_contacts *contacts, size_t segment, bool wall)
+{
+    dem_segment *s = &contacts->segments[segment];
+    dem_soft_runs *runs = &contacts->runs[segment];
+    const dem_contact_columns *c = &contacts->columns;
+    size_t end = s->begin;
+    runs->count = 0;
+    // idle ones stand last
+    for (size_t at = s->begin; at < s->end && c->a[at] < w->bodies.count; end = ++at) {
+        if ((at == s->begin || !same_bodies(c, at - 1, at, wall)) && !add_run(runs, at - s->begin))
+            return false;
+        c->weight[at] = soft_weight(&w->soft, c->a[at], c->sphere_a[at]);
+        if (!wall)
+            c->weight[at] *= soft_weight(&w->soft, c->b[at], c->sphere_b[at]);
+        runs->rise[runs->count - 1] += c->weight[at];
+    }
+    if (!add_run(runs, end - s->begin))
+        return false;
+    runs->count--;
+    for (size_t r = 0; r < runs->count; r++)
+        runs->rise[r] = w->soft.tau * log(runs->rise[r]);
+    s->fresh = false;
+    return true;
+}
+
 dem_status dem_soft_reserve(dem_world *w, dem_error *error)
 {
     size_t most = 0;
     for (int form = -1; form < DEM_WALL_FORMS; form++) {
-        const dem_contacts *contacts = form < 0 ? &w->contacts : &w->wall_contacts[form];
+        dem_contacts *contacts = form < 0 ? &w->contacts : &w->wall_contacts[form];
         for (size_t i = 0; contacts->segments && i < w->segment_count; i++) {
             size_t size = contacts->segments[i].end - contacts->segments[i].begin;
             most = size > most ? size : most;
+            if (contacts->segments[i].fresh && !find_runs(w, contacts, i, form >= 0))
+                return dem_fail_memory(error);
         }
     }
-    if (most < w->soft.capacity)
+    if (most + DEM_BLOCK_LANES <= w->soft.capacity)
         return DEM_OK;
-    size_t capacity = most + most / 4 + DEM_BLOCK_LANES;
-    for (int t = 0; t < w->threads; t++) {
-        free(w->soft.work[t]);
-        w->soft.work[t] = aligned_alloc(64, capacity * DEM_ROW * sizeof(double));
-        if (!w->soft.work[t])
+    size_t capacity = most + most / 4 + 2 * DEM_BLOCK_LANES;
+    for (int t = 0; t < w->threads; t++)
+        if (!reserve_work(&w->soft.work[t], capacity))
             return dem_fail_memory(error);
-    }
     w->soft.capacity = capacity;
     return DEM_OK;
 }
@@ -184,14 +250,14 @@ dem_status dem_soft_reserve(dem_world *w, dem_error *error)
 void dem_soft_pairs(dem_world *w, size_t begin, size_t end, double kick, size_t thread)
 {
     for (size_t i = begin; i < end; i++)
-        w->soft.kernels->segment(w, i, -1, kick, w->soft.work[thread], NULL);
+        w->soft.kernels->segment(w, i, -1, kick, &w->soft.work[thread], NULL);
 }
 
 void dem_soft_walls(dem_world *w, size_t begin, size_t end, double kick, size_t thread)
 {
     for (int form = 0; form < DEM_WALL_FORMS; form++)
         for (size_t i = begin; w->wall_contacts[form].segments && i < end; i++)
-            w->soft.kernels->segment(w, i, form, kick, w->soft.work[thread], NULL);
+            w->soft.kernels->segment(w, i, form, kick, &w->soft.work[thread], NULL);
 }
 
 void dem_soft_records(dem_world *w, size_t segment, int form, dem_contact_record *records)
@@ -201,5 +267,5 @@ void dem_soft_records(dem_world *w, size_t segment, int form, dem_contact_record
     if (s->begin == s->end)
         return;
     memset(records, 0, (s->end - s->begin) * sizeof *records);
-    w->soft.kernels->segment(w, segment, form, 0, w->soft.work[0], records);
+    w->soft.kernels->segment(w, segment, form, 0, &w->soft.work[0], records);
 }

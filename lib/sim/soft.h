@@ -26,17 +26,46 @@
 /// Pairs of spheres count down to this overlap [tau]; with less than the half of it, in part.
 #define DEM_SOFT_REACH 6.0
 
+/// The contacts of one pair of bodies, or of a body and a wall, stand in a run. Its first one remembers for all; at a
+/// mesh, where they change places, all do.
+typedef struct dem_soft_runs {
+    uint32_t *first;  ///< [count + 1] contact, from the segment's first
+    double *rise;     ///< [count] what D is above the deepest overlap at most [m]
+    size_t count, capacity, rise_capacity;
+} dem_soft_runs;
+
+/// Of a run, or of a group of it.
+typedef struct dem_soft_patch {
+    uint32_t row, count;     ///< first of its rows
+    uint32_t place, memory;  ///< contact that stands for it, and that which remembers
+    double deepest;          ///< overlap [m]
+} dem_soft_patch;
+
+/// What is found of a segment's contacts.
+typedef struct dem_soft_work {
+    double *rows;     ///< [8 a contact, then 8 a member of a group] see soft_patch.h
+    double *overlap;  ///< [m]
+    uint32_t *place;  ///< contacts of the rows of groups
+    uint32_t *sorted;
+    dem_soft_patch *patches;
+} dem_soft_work;
+
 typedef struct dem_soft {
-    double tau;          ///< [m]; 0: contacts are not soft
-    bool automatic;      ///< tau was not given
-    double *weights;     ///< of the spheres of each shape and rung of sizes [-]
-    uint32_t *first;     ///< [bodies] weight of the body's first sphere
-    double *radius;      ///< [bodies] of curvature [m]
-    double **work;       ///< [threads] rows of a segment's contacts, and one of none behind them
-    size_t capacity;     ///< rows in each
-    size_t table_count;  ///< tables of weights that were made
+    double tau;           ///< [m]; 0: contacts are not soft
+    bool automatic;       ///< tau was not given
+    double *weights;      ///< of the spheres of each shape and rung of sizes [-]
+    uint32_t *first;      ///< [bodies] weight of a sphere: this plus the sphere's row, modulo 2^32
+    double *radius;       ///< [bodies] of curvature [m]
+    dem_soft_work *work;  ///< [threads]
+    size_t capacity;      ///< contacts in each
+    size_t table_count;   ///< tables of weights that were made
     const struct dem_soft_kernels *kernels;
 } dem_soft;
+
+static inline double soft_weight(const dem_soft *soft, uint32_t row, uint32_t sphere)
+{
+    return soft->weights[(uint32_t)(soft->first[row] + sphere)];
+}
 
 /// The normals about which the contacts with a mesh are grouped: that of the deepest, of the deepest that is not near
 /// it, and so on. A contact belongs to the first one that it is near to.
@@ -67,7 +96,9 @@ double dem_soft_likely_overlap(const dem_world *world);
 /// What --explain says of the number of spheres that touch at once.
 void dem_soft_explain(const dem_world *world, dem_buffer *out);
 
-/// Room for the work of the segments as they are now.
+void dem_soft_runs_release(dem_soft_runs *runs);
+
+/// Finds the runs and weights of the segments whose lists have changed, and makes room for the work of all.
 dem_status dem_soft_reserve(dem_world *world, dem_error *error);
 
 /// The forces of the contacts of the segments [begin, end), added to the momenta: of pairs, or of all walls.
@@ -87,7 +118,8 @@ bool dem_soft_weigh(const double (*spheres)[4], size_t count, double tau, double
 /// The loop over the contacts of a segment, compiled once per instruction set (kernels.cmake); all give the same bits.
 /// Forces, or records.
 typedef struct dem_soft_kernels {
-    void (*segment)(dem_world *world, size_t segment, int form, double kick, double *work, dem_contact_record *records);
+    void (*segment)(dem_world *world, size_t segment, int form, double kick, dem_soft_work *work,
+                    dem_contact_record *records);
 } dem_soft_kernels;
 
 /// The set named; NULL: none such, or not usable here.

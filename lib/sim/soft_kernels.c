@@ -1,367 +1,531 @@
 // Compiled once as it is (plain) and once per instruction set with DEM_KERNELS set to v3 or v4.
+//
+// Two loops over the contacts of a segment. The first measures all pairs of spheres, which stand in runs of the same
+// bodies. Each run that is within the reach, or remembers, is a patch. The second goes through DEM_WIDTH patches side
+// by side, those with about as many pairs: sums, and then the laws.
 #include "base/level.h"
+#include "sim/contacts.h"
 #include "sim/soft_law.h"
-#include "sim/state.h"
 
-// ---- rows of a segment's contacts
+enum { KEPT = 9 };  // numbers that a patch remembers
 
-static void fill_rows(const dem_features f, dem_world *w, const dem_contacts *contacts, const dem_segment *s, int form,
-                      double *largest, double *work)
+// what a segment's loops work on
+typedef struct soft_job {
+    dem_world *w;
+    dem_contacts *contacts;
+    const dem_segment *s;
+    int form;
+    double kick;
+    dem_soft_work *work;
+    dem_tally *tally;
+    dem_contact_record *records;  // NULL: forces
+    double *kept[KEPT];           // columns of what contacts remember, from the segment's first; NULL: there is none
+    double *attached;
+    size_t size, rows, patches;
+} soft_job;
+
+static void list_kept(soft_job *job)
 {
-    const dem_contact_columns *c = &contacts->columns;
-    dem_rows rows = world_rows(w);
+    const dem_contact_columns *c = &job->contacts->columns;
+    double *const kept[KEPT] = {c->spring[0], c->spring[1], c->spring[2], c->dash[0], c->dash[1],
+                                c->dash[2],   c->twist,     c->patch,     c->loss};
+    for (int k = 0; k < KEPT; k++)
+        job->kept[k] = kept[k] ? kept[k] + job->s->begin : NULL;
+    job->attached = c->attached + job->s->begin;
+}
+
+// ---- pairs
+
+DEM_INLINE void put_rows(soft_job *job, size_t at, const contact_batch *batch, size_t g)
+{
+    wide overlap = wide_load(batch->at[AT_OVERLAP] + g), row[8];
+    wide3 n = get3(batch, AT_NORMAL, g), arm = get3(batch, AT_A, g);
+    if (job->form == DEM_FORM_MESH)  // places that are not in use have no normal
+        overlap = wide_select(wide_less(wide_all(0.5), dot3(n, n)), overlap, wide_all(DEM_SOFT_APART));
+    wide_store(job->work->overlap + at, overlap);
+    row[ROW_OVERLAP] = overlap;
+    row[ROW_NORMAL] = n.x;
+    row[ROW_NORMAL + 1] = n.y;
+    row[ROW_NORMAL + 2] = n.z;
+    row[ROW_ARM] = arm.x;
+    row[ROW_ARM + 1] = arm.y;
+    row[ROW_ARM + 2] = arm.z;
+    row[ROW_WEIGHT] = wide_load(job->contacts->columns.weight + job->s->begin + at);
+    rows_store_next(job->work->rows + DEM_ROW * at, DEM_ROW, row);
+}
+
+DEM_INLINE void measure(const dem_features f, soft_job *job)
+{
+    const dem_contact_columns *c = &job->contacts->columns;
+    dem_rows rows = world_rows(job->w);
     contact_batch batch;
-    for (size_t from = s->begin; from < s->end; from += BATCH) {
-        size_t count = s->end - from < BATCH ? s->end - from : BATCH;
-        for (size_t g = 0; g < count; g += DEM_WIDTH) {
-            if (form < 0)
-                pair_geometry(f, &rows, c, from + g, g, &batch, largest);
+    size_t begin = job->s->begin;
+    double largest = job->tally->overlap_ratio;
+    for (size_t from = 0; from < job->size; from += BATCH) {
+        size_t count = job->size - from < BATCH ? job->size - from : BATCH;
+        for (size_t g = 0; g < count; g += DEM_WIDTH)
+            if (job->form < 0)
+                pair_geometry(f, &rows, c, begin + from + g, g, &batch, &largest);
             else
-                wall_geometry(f, &rows, c, (dem_wall_form)form, from + g, g, &batch, largest);
-            wide row[8];
-            double weight[DEM_WIDTH];
-            for (size_t i = 0; i < DEM_WIDTH; i++) {
-                size_t at = from + g + i;
-                uint32_t a = c->a[at], b = form < 0 ? c->b[at] : 0;
-                weight[i] = 0;
-                if (a >= w->bodies.count)
-                    continue;  // idle
-                const dem_template *t = w->templates.items;
-                weight[i] = w->soft.weights[w->soft.first[a] + c->sphere_a[at] - t[w->bodies.shape[a]].first];
-                if (form < 0)
-                    weight[i] *= w->soft.weights[w->soft.first[b] + c->sphere_b[at] - t[w->bodies.shape[b]].first];
-            }
-            row[ROW_OVERLAP] = wide_load(batch.at[AT_OVERLAP] + g);
-            for (int k = 0; k < 3; k++) {
-                row[ROW_NORMAL + k] = wide_load(batch.at[AT_NORMAL + k] + g);
-                row[ROW_ARM + k] = wide_load(batch.at[AT_A + k] + g);
-            }
-            row[ROW_WEIGHT] = wide_load(weight);
-            if (form == DEM_FORM_MESH) {
-                // places that are not in use have no normal
-                wide3 n = {row[ROW_NORMAL], row[ROW_NORMAL + 1], row[ROW_NORMAL + 2]};
-                row[ROW_OVERLAP] =
-                    wide_select(wide_less(wide_all(0.5), dot3(n, n)), row[ROW_OVERLAP], wide_all(DEM_SOFT_APART));
-            }
-            rows_store_next(work + DEM_ROW * (from + g - s->begin), DEM_ROW, row);
-        }
+                wall_geometry(f, &rows, c, (dem_wall_form)job->form, begin + from + g, g, &batch, &largest);
+        for (size_t g = 0; g < count; g += DEM_WIDTH)
+            put_rows(job, from + g, &batch, g);
     }
-    memset(work + DEM_ROW * (s->end - s->begin), 0, DEM_ROW * sizeof *work);
-    work[DEM_ROW * (s->end - s->begin) + ROW_OVERLAP] = DEM_SOFT_APART;
-}
-
-// ---- bodies
-
-static soft_side side_of(const dem_world *w, size_t row)
-{
-    const double *motion = body_pose(&w->bodies, row) + 8, *inertia = w->bodies.inertia + DEM_ROW * row;
-    dem_quat q = body_orientation(&w->bodies, row);
-    dem_vec3 x = quat_rotate(q, v3(1, 0, 0)), y = quat_rotate(q, v3(0, 1, 0)), z = quat_rotate(q, v3(0, 0, 1));
-    soft_side s = {.velocity = v3(motion[0], motion[1], motion[2]),
-                   .spin = v3(motion[3], motion[4], motion[5]),
-                   .inverse_mass = inertia[0],
-                   .brisk = inertia[6],
-                   .quick = larger(inertia[1], larger(inertia[2], inertia[3]))};
-    const double *i = inertia + 1;
-    s.inverse[0] = i[0] * x.x * x.x + i[1] * y.x * y.x + i[2] * z.x * z.x;
-    s.inverse[1] = i[0] * x.y * x.y + i[1] * y.y * y.y + i[2] * z.y * z.y;
-    s.inverse[2] = i[0] * x.z * x.z + i[1] * y.z * y.z + i[2] * z.z * z.z;
-    s.inverse[3] = i[0] * x.x * x.y + i[1] * y.x * y.y + i[2] * z.x * z.y;
-    s.inverse[4] = i[0] * x.x * x.z + i[1] * y.x * y.z + i[2] * z.x * z.z;
-    s.inverse[5] = i[0] * x.y * x.z + i[1] * y.y * y.z + i[2] * z.y * z.z;
-    return s;
-}
-
-// as a body that nothing moves, whose velocity is told where the centre of `row` is
-static soft_side side_of_wall(const dem_world *w, size_t wall, size_t row)
-{
-    soft_side s = {0};
-    if (!w->features.moving)
-        return s;
-    const double *v = w->walls.rows + DEM_WALL_ROW * wall + 8;
-    s.spin = v3(v[3], v[4], v[5]);
-    s.velocity = v3_add(v3(v[0], v[1], v[2]), v3_cross(s.spin, body_position(&w->bodies, row)));
-    return s;
+    job->tally->overlap_ratio = largest;
+    // a row of none
+    memset(job->work->rows + DEM_ROW * job->size, 0, DEM_ROW * sizeof *job->work->rows);
+    job->rows = job->size + 1;
 }
 
 // ---- patches
 
-// the contacts of one pair of bodies, or of a body and a wall: [start, end) of the segment's list
-typedef struct patch_run {
-    dem_contacts *contacts;
-    const dem_segment *s;
-    int form;
-    size_t start, end;
-    const double *work;
-    const dem_soft_leaders *leaders;  // NULL: one patch for all
-    int group;
-} patch_run;
-
-static dem_vec3 normal_of(const double *row)
+static void find_patches(soft_job *job)
 {
+    const dem_soft_runs *runs = &job->contacts->runs[job->s - job->contacts->segments];
+    const double *overlap = job->work->overlap, *attached = job->attached;
+    dem_soft_patch *patch = job->work->patches;
+    for (size_t r = 0; r < runs->count; r++) {
+        uint32_t first = runs->first[r], end = runs->first[r + 1];
+        double deepest = overlap[first];
+        for (uint32_t k = first + 1; k < end; k++)
+            deepest = larger(deepest, overlap[k]);
+        if (deepest + runs->rise[r] > 0 || attached[first] > 0)
+            *patch++ = (dem_soft_patch){first, end - first, first, first, deepest};
+    }
+    job->patches = (size_t)(patch - job->work->patches);
+}
+
+static dem_vec3 normal_of(const soft_job *job, size_t k)
+{
+    const double *row = job->work->rows + DEM_ROW * k;
     return v3(row[ROW_NORMAL], row[ROW_NORMAL + 1], row[ROW_NORMAL + 2]);
 }
 
-static bool belongs(const patch_run *run, size_t at)
+// makes a patch of those of the contacts [begin, end) of a mesh that belong to a group: copies of their rows
+static void make_group(soft_job *job, size_t begin, size_t end, const dem_soft_leaders *leaders, int group)
 {
-    return !run->leaders || soft_group(run->leaders, normal_of(run->work + DEM_ROW * at)) == run->group;
-}
-
-// places of the contacts of a run, one after the other: see segment_place
-typedef struct walker {
-    size_t blocks, block, lane;
-} walker;
-
-static walker walk(const patch_run *run)
-{
-    size_t blocks = (run->s->end - run->s->begin) / DEM_BLOCK_LANES;
-    return (walker){blocks, run->start % blocks, run->start / blocks};
-}
-static size_t step_on(walker *k)
-{
-    size_t at = k->block * DEM_BLOCK_LANES + k->lane;
-    if (++k->block == k->blocks) {
-        k->block = 0;
-        k->lane++;
-    }
-    return at;
-}
-
-// the deepest pair of spheres, and the deepest of those that remember; -1: none
-typedef struct patch_ends {
-    double deepest;
-    size_t place;
-    double remembers;
-    size_t memory;
-    bool some;
-} patch_ends;
-
-static patch_ends look_over(const patch_run *run)
-{
-    const double *attached = run->contacts->columns.attached;
-    patch_ends ends = {.deepest = DEM_SOFT_APART, .remembers = 2 * DEM_SOFT_APART};
-    walker k = walk(run);
-    for (size_t i = run->start; i < run->end; i++) {
-        size_t at = step_on(&k);
-        double d = run->work[DEM_ROW * at + ROW_OVERLAP];
-        if (!belongs(run, at))
+    dem_soft_work *work = job->work;
+    dem_soft_patch p = {.row = (uint32_t)job->rows, .deepest = 2 * DEM_SOFT_APART};
+    double remembers = 2 * DEM_SOFT_APART;
+    bool some = false;
+    for (size_t k = begin; k < end; k++) {
+        double d = work->overlap[k];
+        if (!(d > DEM_SOFT_APART) || soft_group(leaders, normal_of(job, k)) != group)
             continue;
-        if (d > ends.deepest) {
-            ends.deepest = d;
-            ends.place = at;
+        memcpy(work->rows + DEM_ROW * job->rows, work->rows + DEM_ROW * k, DEM_ROW * sizeof *work->rows);
+        work->place[job->rows++] = (uint32_t)k;
+        p.count++;
+        if (d > p.deepest) {
+            p.deepest = d;
+            p.place = (uint32_t)k;
         }
-        if (attached[run->s->begin + at] > 0 && d > ends.remembers) {
-            ends.remembers = d;
-            ends.memory = at;
-            ends.some = true;
-        }
-    }
-    return ends;
-}
-
-// all that count remember the same; without a history, all forget
-static void remember(const patch_run *run, const dem_contact_history *h)
-{
-    const dem_contact_columns *c = &run->contacts->columns;
-    walker k = walk(run);
-    for (size_t i = run->start; i < run->end; i++) {
-        size_t at = step_on(&k);
-        if (belongs(run, at))
-            dem_history_put(c, run->s->begin + at, h);
-    }
-}
-
-static void sum_patch(const patch_run *run, const soft_patch_data *p, soft_sums *sums)
-{
-    memset(sums, 0, sizeof *sums);
-    walker k = walk(run);
-    size_t none = run->s->end - run->s->begin;
-    for (size_t from = run->start; from < run->end; from += DEM_BLOCK_LANES) {
-        uint32_t row[DEM_BLOCK_LANES];
-        for (size_t i = 0; i < DEM_BLOCK_LANES; i++) {
-            size_t at = from + i < run->end ? step_on(&k) : none;
-            row[i] = (uint32_t)(at == none || belongs(run, at) ? at : none);
-        }
-        for (size_t l = 0; l < DEM_BLOCK_LANES; l += DEM_WIDTH)
-            sum_lanes(p, run->work, row + l, l, sums);
-    }
-}
-
-static void push(double *momentum, dem_vec3 force, dem_vec3 moment, double kick, double strain)
-{
-    double add[7] = {kick * force.x,  kick * force.y,  kick * force.z, kick * moment.x,
-                     kick * moment.y, kick * moment.z, strain};
-    for (int k = 0; k < 7; k++)
-        momentum[k] += add[k];
-}
-
-static void put_record(dem_contact_record *r, const soft_patch_data *p, const soft_whole *s, const soft_result *f)
-{
-    dem_vec3 from_b = v3_sub(s->point, p->between);
-    for (int k = 0; k < 3; k++) {
-        r->normal[k] = v3_get(s->n, k);
-        r->point_a[k] = v3_get(s->point, k);
-        r->point_b[k] = v3_get(from_b, k);
-        r->force[k] = v3_get(f->force, k);
-        r->turning[k] = v3_get(f->turning, k);
-    }
-    r->overlap = s->depth;
-    r->normal_force = f->net * s->along;
-    r->elastic_normal = f->elastic_normal;
-    r->elastic_slide = f->elastic_slide;
-    r->elastic_turn = f->elastic_turn;
-    r->touches = true;
-}
-
-static dem_vec3 minus(dem_vec3 v)
-{
-    return v3(-v.x, -v.y, -v.z);
-}
-
-typedef struct patch_bodies {
-    uint32_t a, b, target, wall;
-    soft_side side[2];
-} patch_bodies;
-
-static patch_bodies bodies_of(const dem_world *w, const patch_run *run, soft_patch_data *p)
-{
-    const dem_contact_columns *c = &run->contacts->columns;
-    size_t at = segment_place(run->s, run->start);
-    patch_bodies pair = {.a = c->a[at]};
-    pair.side[0] = side_of(w, pair.a);
-    if (run->form < 0) {
-        pair.b = c->b[at];
-        pair.target = c->target[at];
-        pair.side[1] = side_of(w, pair.b);
-        p->between = v3_sub(body_position(&w->bodies, pair.b), body_position(&w->bodies, pair.a));
-        if (c->shift) {
-            const double *shift = w->shifts + 4 * (size_t)c->shift[at];
-            p->between = v3_add(p->between, v3(shift[0], shift[1], shift[2]));
-        }
-    } else {
-        pair.wall = c->sphere_b[at];
-        pair.side[1] = side_of_wall(w, pair.wall, pair.a);
-    }
-    return pair;
-}
-
-static soft_spot spot_of(const dem_world *w, const patch_run *run, const patch_bodies *pair)
-{
-    const dem_contact_columns *c = &run->contacts->columns;
-    uint32_t law = c->law ? c->law[segment_place(run->s, run->start)] : 0;
-    double ra = w->soft.radius[pair->a], rb = run->form < 0 ? w->soft.radius[pair->b] : ra, least = smaller(ra, rb);
-    bool wall = run->form >= 0;
-    return (soft_spot){.law = w->laws.rows + (size_t)LAW_SLOTS * law,
-                       .reduced = wall ? ra : ra * rb / (ra + rb),
-                       .area = wall ? ra : least * least / (ra + rb),
-                       .last_step = w->last_step,
-                       .next_step = w->next_step,
-                       .times = wall ? 1 : 2};
-}
-
-static void do_patch(dem_world *w, const dem_features f, patch_run *run, double kick, dem_tally *tally,
-                     dem_contact_record *records)
-{
-    patch_ends ends = look_over(run);
-    dem_contact_history h = {0};
-    if (ends.some && ends.deepest > -DEM_SOFT_REACH * w->soft.tau)
-        h = dem_history_get(&run->contacts->columns, run->s->begin + ends.memory);
-    soft_patch_data p = {.tau = w->soft.tau, .deepest = ends.deepest, .watch = f.watch};
-    if (ends.deepest <= -DEM_SOFT_REACH * p.tau) {
-        if (ends.some && !records)
-            remember(run, &h);  // far apart at once: the history is of none
-        return;
-    }
-    patch_bodies pair = bodies_of(w, run, &p);
-    p.a = &pair.side[0];
-    p.b = &pair.side[1];
-    soft_sums sums;
-    sum_patch(run, &p, &sums);
-    soft_whole s = soft_whole_of(&p, &sums);
-    if (!(s.depth > 0) && !ends.some)
-        return;
-    soft_spot spot = spot_of(w, run, &pair);
-    soft_result r = soft_act(f, &spot, &p, &s, &h);
-    double power = run->form >= 0 && f.moving ? v3_dot(r.force, p.b->velocity) + v3_dot(r.moment, p.b->spin) : 0;
-    if (records) {
-        if (s.depth > 0)
-            put_record(&records[ends.place], &p, &s, &r);
-        records[ends.place].lost_friction = r.lost_friction;
-        records[ends.place].lost_viscous = r.lost_viscous;
-        records[ends.place].wall_power = power;
-        return;
-    }
-    h.attached = s.depth > 0;
-    remember(run, &h);
-    tally->friction[0] += r.lost_friction;
-    tally->viscous[0] += r.lost_viscous;
-    tally->work[0] += kick * power;
-    push(w->bodies.momentum + DEM_ROW * (size_t)pair.a, r.force, r.moment, kick, r.strain_a);
-    if (run->form < 0)
-        push(w->bodies.momentum + DEM_ROW * (size_t)pair.target, minus(r.force),
-             v3_sub(v3_cross(p.between, r.force), r.moment), kick, r.strain_b);
-}
-
-// the next normal to group by: of the deepest contact that is in no group yet
-static bool add_leader(const patch_run *run, double reach, dem_soft_leaders *leaders)
-{
-    double deepest = -reach;
-    dem_vec3 normal = v3(0, 0, 0);
-    walker k = walk(run);
-    for (size_t i = run->start; i < run->end; i++) {
-        const double *row = run->work + DEM_ROW * step_on(&k);
-        if (row[ROW_OVERLAP] > deepest && soft_group(leaders, normal_of(row)) < 0) {
-            deepest = row[ROW_OVERLAP];
-            normal = normal_of(row);
+        if (job->attached[k] > 0 && d > remembers) {
+            remembers = d;
+            p.memory = (uint32_t)k;
+            some = true;
         }
     }
-    if (deepest > -reach)
-        leaders->normal[leaders->count++] = normal;
-    return deepest > -reach;
+    if (!some)
+        p.memory = p.place;
+    if (p.count && (some || p.deepest > -DEM_SOFT_REACH * job->w->soft.tau))
+        work->patches[job->patches++] = p;
 }
 
-static void do_groups(dem_world *w, const dem_features f, patch_run *run, double kick, dem_tally *tally,
-                      dem_contact_record *records)
+// a place that is not in use
+static void forget(const soft_job *job, size_t k)
+{
+    job->attached[k] = 0;
+    for (int i = 0; i < KEPT; i++)
+        if (job->kept[i])
+            job->kept[i][k] = 0;
+}
+
+// the normals to group by: of the deepest contact that is in no group yet, and so on
+static void make_groups(soft_job *job, size_t begin, size_t end)
 {
     dem_soft_leaders leaders = {.count = 0};
-    while (leaders.count < DEM_SOFT_LEADERS && add_leader(run, w->ahead, &leaders))
-        ;
-    run->leaders = &leaders;
-    for (run->group = 0; run->group < leaders.count; run->group++)
-        do_patch(w, f, run, kick, tally, records);
+    for (bool some = true; some && leaders.count < DEM_SOFT_LEADERS;) {
+        double deepest = -DEM_SOFT_REACH * job->w->soft.tau;
+        dem_vec3 normal = v3(0, 0, 0);
+        some = false;
+        for (size_t k = begin; k < end; k++)
+            if (job->work->overlap[k] > deepest && soft_group(&leaders, normal_of(job, k)) < 0) {
+                deepest = job->work->overlap[k];
+                normal = normal_of(job, k);
+                some = true;
+            }
+        if (some)
+            leaders.normal[leaders.count++] = normal;
+    }
+    for (int group = -1; group < leaders.count; group++)
+        make_group(job, begin, end, &leaders, group);
+    for (size_t k = begin; k < end && !job->records; k++)
+        if (!(job->work->overlap[k] > DEM_SOFT_APART))
+            forget(job, k);
 }
 
-static void segment(dem_world *w, size_t which, int form, double kick, double *work, dem_contact_record *records)
+static void find_groups(soft_job *job)
+{
+    const dem_soft_runs *runs = &job->contacts->runs[job->s - job->contacts->segments];
+    for (size_t r = 0; r < runs->count; r++)
+        make_groups(job, runs->first[r], runs->first[r + 1]);
+}
+
+// by their number of pairs
+static void sort_patches(const soft_job *job)
+{
+    enum { BINS = 64 };
+    uint32_t start[BINS + 1] = {0};
+    const dem_soft_patch *p = job->work->patches;
+    for (size_t i = 0; i < job->patches; i++)
+        start[p[i].count < BINS ? p[i].count : BINS]++;
+    for (uint32_t i = 0, sum = 0; i <= BINS; i++) {
+        uint32_t here = start[i];
+        start[i] = sum;
+        sum += here;
+    }
+    for (size_t i = 0; i < job->patches; i++)
+        job->work->sorted[start[p[i].count < BINS ? p[i].count : BINS]++] = (uint32_t)i;
+}
+
+// ---- eight patches
+
+// columns by lane
+typedef struct soft_eight {
+    const dem_soft_patch *p[DEM_BLOCK_LANES];
+    size_t count;
+    uint32_t a[DEM_BLOCK_LANES], b[DEM_BLOCK_LANES], law[DEM_BLOCK_LANES], shift[DEM_BLOCK_LANES];
+    uint32_t first[DEM_BLOCK_LANES], members[DEM_BLOCK_LANES];
+    bool remembers[DEM_BLOCK_LANES];
+    double sum[DEM_BLOCK_LANES], deepest[DEM_BLOCK_LANES], depth[DEM_BLOCK_LANES], radius[2][DEM_BLOCK_LANES];
+    double kept[KEPT][DEM_BLOCK_LANES];
+    double momentum[2][DEM_BLOCK_LANES][DEM_ROW] __attribute__((aligned(64)));
+    double force[3][DEM_BLOCK_LANES], hardness[DEM_BLOCK_LANES];
+} soft_eight;
+
+static void fill_lane(const soft_job *job, soft_eight *e, size_t i)
+{
+    const dem_contact_columns *c = &job->contacts->columns;
+    const dem_soft_patch *p = e->p[i];
+    size_t at = job->s->begin + p->place;
+    bool wall = job->form >= 0;
+    e->a[i] = c->a[at];
+    e->b[i] = wall ? c->sphere_b[at] : c->b[at];
+    e->law[i] = c->law ? c->law[at] : 0;
+    e->shift[i] = c->shift ? c->shift[at] : 0;
+    e->first[i] = p->row;
+    e->members[i] = p->count;
+    e->deepest[i] = p->deepest;
+    e->remembers[i] = job->attached[p->memory] > 0;
+    e->radius[0][i] = job->w->soft.radius[e->a[i]];
+    e->radius[1][i] = wall ? e->radius[0][i] : job->w->soft.radius[e->b[i]];
+}
+
+// a lane without a patch: dummies, or the wall behind the last
+static void fill_idle(const soft_job *job, soft_eight *e, size_t i)
+{
+    e->a[i] = job->w->bodies.dummy;
+    e->b[i] = job->form < 0 ? e->a[i] + 1 : (uint32_t)job->w->walls.count;
+    e->law[i] = e->shift[i] = e->first[i] = e->members[i] = 0;
+    e->remembers[i] = false;
+    e->deepest[i] = -DEM_SOFT_REACH * job->w->soft.tau;
+    e->radius[0][i] = e->radius[1][i] = 1;
+}
+
+// what contacts remember that do not touch is 0
+static void fill_kept(const soft_job *job, soft_eight *e)
+{
+    for (int k = 0; k < KEPT; k++) {
+        const double *from = job->kept[k];
+        for (size_t i = 0; i < DEM_BLOCK_LANES; i++)
+            e->kept[k][i] = from && i < e->count ? from[e->p[i]->memory] : 0;
+    }
+}
+
+// all of a group remember the same at a mesh, whose contacts may change places
+static void remember(const soft_job *job, const soft_eight *e, size_t i)
+{
+    const dem_soft_patch *p = e->p[i];
+    bool mesh = job->form == DEM_FORM_MESH;
+    for (uint32_t m = 0; m < (mesh ? p->count : 1); m++) {
+        size_t place = mesh ? job->work->place[p->row + m] : p->place;
+        job->attached[place] = e->depth[i] > 0;
+        for (int k = 0; k < KEPT; k++)
+            if (job->kept[k])
+                job->kept[k][place] = e->kept[k][i];
+    }
+}
+
+DEM_INLINE soft_lanes load_lanes(const dem_features f, const soft_job *job, const soft_eight *e, size_t l)
+{
+    dem_rows rows = world_rows(job->w);
+    wide pose[8], other[8], zero = wide_all(0);
+    rows_load(rows.bodies, DEM_BODY_ROW, e->a + l, pose);
+    soft_lanes p = {.first = e->first + l,
+                    .count = e->members + l,
+                    .deepest = wide_load(e->deepest + l),
+                    .tau = job->w->soft.tau,
+                    .between = {zero, zero, zero}};
+    p.a = side_of(&rows, e->a + l, pose);
+    if (job->form < 0) {
+        rows_load(rows.bodies, DEM_BODY_ROW, e->b + l, other);
+        p.between = (wide3){other[0] - pose[0], other[1] - pose[1], other[2] - pose[2]};
+        if (f.periodic) {
+            wide shift[4];
+            rows_load4(rows.shifts, 4, e->shift + l, shift);
+            p.between = plus3(p.between, (wide3){shift[0], shift[1], shift[2]});
+        }
+        p.b = side_of(&rows, e->b + l, other);
+        return p;
+    }
+    // as a body that nothing moves, whose velocity is told where the centre of a is
+    p.b = (soft_side){.velocity = {zero, zero, zero},
+                      .spin = {zero, zero, zero},
+                      .inverse_mass = zero,
+                      .inverse = {zero, zero, zero, zero, zero, zero},
+                      .brisk = zero,
+                      .quick = zero};
+    if (f.moving) {
+        rows_load(rows.walls + 8, DEM_WALL_ROW, e->b + l, other);
+        p.b.spin = (wide3){other[3], other[4], other[5]};
+        p.b.velocity =
+            plus3((wide3){other[0], other[1], other[2]}, cross3(p.b.spin, (wide3){pose[0], pose[1], pose[2]}));
+    }
+    return p;
+}
+
+DEM_INLINE soft_spot load_spot(const dem_features f, const soft_job *job, const soft_eight *e, size_t l)
+{
+    const dem_world *w = job->w;
+    bool wall = job->form >= 0;
+    wide a = wide_load(e->radius[0] + l), b = wide_load(e->radius[1] + l), least = wide_min(a, b);
+    soft_spot spot = {.reduced = reduced_radius(a, b),
+                      .area = least * least / (a + b),
+                      .tau = w->soft.tau,
+                      .last_step = w->last_step,
+                      .next_step = w->next_step,
+                      .wall = wall};
+    if (wall)
+        spot.reduced = spot.area = a;
+    for (int k = 0; f.mixed && k < LAW_MORE; k += 8)
+        rows_load(w->laws.rows + k, LAW_SLOTS, e->law + l, spot.law + k);
+    for (int k = 0; !f.mixed && k < LAW_MORE; k++)
+        spot.law[k] = wide_all(w->laws.rows[k]);
+    return spot;
+}
+
+DEM_INLINE wide3 kept3(const soft_eight *e, int k, size_t l)
+{
+    return (wide3){wide_load(e->kept[k] + l), wide_load(e->kept[k + 1] + l), wide_load(e->kept[k + 2] + l)};
+}
+
+DEM_INLINE void keep_memory(soft_eight *e, size_t l, const soft_memory *m)
+{
+    const wide kept[KEPT] = {m->spring.x, m->spring.y, m->spring.z, m->dash.x, m->dash.y,
+                             m->dash.z,   m->twist,    m->patch,    m->loss};
+    for (int k = 0; k < KEPT; k++)
+        wide_store(e->kept[k] + l, kept[k]);
+}
+
+DEM_INLINE void put_momentum(soft_eight *e, size_t l, int side, wide3 force, wide3 moment, double kick, wide strain)
+{
+    wide by = wide_all(kick);
+    wide row[8] = {force.x * by,  force.y * by,  force.z * by, moment.x * by,
+                   moment.y * by, moment.z * by, strain,       wide_all(0)};
+    rows_store_next(e->momentum[side][l], DEM_ROW, row);
+}
+
+// lanes that are written down
+enum {
+    TOLD_NORMAL,
+    TOLD_A = 3,
+    TOLD_B = 6,
+    TOLD_FORCE = 9,
+    TOLD_TURNING = 12,
+    TOLD_OVERLAP = 15,
+    TOLD_NET,
+    TOLD_ELASTIC,
+    TOLD_SLIDE,
+    TOLD_TURN,
+    TOLD_FRICTION,
+    TOLD_VISCOUS,
+    TOLD_POWER,
+    TOLD
+};
+
+static void put_records(const soft_job *job, const soft_eight *e, size_t l, const soft_lanes *p, const soft_whole *s,
+                        const soft_result *r, wide power)
+{
+    double told[TOLD][DEM_WIDTH];
+    wide3 from_b = minus3(s->point, p->between), turning = minus3(r->moment, cross3(s->point, r->force));
+    const wide3 vectors[] = {s->n, s->point, from_b, r->force, turning};
+    const wide numbers[] = {s->depth,        r->net * s->along, r->elastic_normal, r->elastic_slide,
+                            r->elastic_turn, r->lost_friction,  r->lost_viscous,   power};
+    for (int k = 0; k < 5; k++) {
+        wide_store(told[3 * k], vectors[k].x);
+        wide_store(told[3 * k + 1], vectors[k].y);
+        wide_store(told[3 * k + 2], vectors[k].z);
+    }
+    for (int k = TOLD_OVERLAP; k < TOLD; k++)
+        wide_store(told[k], numbers[k - TOLD_OVERLAP]);
+    for (size_t i = 0; i < DEM_WIDTH && l + i < e->count; i++) {
+        dem_contact_record *to = &job->records[e->p[l + i]->place];
+        to->lost_friction = told[TOLD_FRICTION][i];
+        to->lost_viscous = told[TOLD_VISCOUS][i];
+        to->wall_power = told[TOLD_POWER][i];
+        if (!(told[TOLD_OVERLAP][i] > 0))
+            continue;
+        for (int k = 0; k < 3; k++) {
+            to->normal[k] = told[TOLD_NORMAL + k][i];
+            to->point_a[k] = told[TOLD_A + k][i];
+            to->point_b[k] = told[TOLD_B + k][i];
+            to->force[k] = told[TOLD_FORCE + k][i];
+            to->turning[k] = told[TOLD_TURNING + k][i];
+        }
+        to->overlap = told[TOLD_OVERLAP][i];
+        to->normal_force = told[TOLD_NET][i];
+        to->elastic_normal = told[TOLD_ELASTIC][i];
+        to->elastic_slide = told[TOLD_SLIDE][i];
+        to->elastic_turn = told[TOLD_TURN][i];
+        to->touches = true;
+    }
+}
+
+// D of the patches; false: none of them touches or remembers
+static bool find_depths(const soft_job *job, soft_eight *e, size_t l)
+{
+    double tau = job->w->soft.tau;
+    bool some = false;
+    for (size_t i = l; i < l + DEM_WIDTH; i++) {
+        double sum = e->sum[i], deepest = e->deepest[i];
+        e->depth[i] = -DEM_SOFT_REACH * tau;
+        // log S <= S - 1
+        if (sum > 0 && (e->remembers[i] || deepest / tau + sum > 1))
+            e->depth[i] = larger(e->depth[i], deepest + tau * log(sum));
+        some |= e->depth[i] > 0 || e->remembers[i];
+    }
+    return some;
+}
+
+DEM_INLINE void act_lanes(const dem_features f, soft_job *job, soft_eight *e, size_t l)
+{
+    soft_lanes p = load_lanes(f, job, e, l);
+    soft_sums sums = soft_sum(f, &p, job->work->rows, (uint32_t)job->size);
+    wide_store(e->sum + l, sums.s);
+    if (!find_depths(job, e, l))
+        return;
+    soft_spot spot = load_spot(f, job, e, l);
+    soft_whole s = soft_whole_of(&p, &sums, wide_load(e->depth + l));
+    soft_memory m = {kept3(e, 0, l), kept3(e, 3, l), wide_load(e->kept[6] + l), wide_load(e->kept[7] + l),
+                     wide_load(e->kept[8] + l)};
+    soft_result r = soft_act(f, &spot, &p, &s, &m);
+    wide power = wide_all(0), zero = power;
+    if (f.moving && spot.wall)
+        power = dot3(r.force, p.b.velocity) + dot3(r.moment, p.b.spin);
+    if (job->records) {
+        put_records(job, e, l, &p, &s, &r, power);
+        return;
+    }
+    keep_memory(e, l, &m);
+    if (f.ledger) {
+        tally_add(job->tally->friction, l, r.lost_friction);
+        tally_add(job->tally->viscous, l, r.lost_viscous);
+        tally_add(job->tally->work, l, wide_all(job->kick) * power);
+    }
+    put_momentum(e, l, 0, r.force, r.moment, job->kick, r.strain_a);
+    if (job->form < 0) {
+        wide3 force = {zero - r.force.x, zero - r.force.y, zero - r.force.z};
+        put_momentum(e, l, 1, force, minus3(cross3(p.between, r.force), r.moment), job->kick, r.strain_b);
+    }
+    if (f.reaction && spot.wall) {
+        wide_store(e->force[0] + l, r.force.x);
+        wide_store(e->force[1] + l, r.force.y);
+        wide_store(e->force[2] + l, r.force.z);
+        wide_store(e->hardness + l, r.hardness);
+    }
+}
+
+static void push(double *to, const double *add)
+{
+    for (int k = 0; k < DEM_ROW; k++)
+        to[k] += add[k];
+}
+
+DEM_INLINE void act_eight(const dem_features f, soft_job *job, size_t from)
+{
+    const dem_contact_columns *c = &job->contacts->columns;
+    double *momentum = job->w->bodies.momentum;
+    soft_eight e;
+    e.count = job->patches - from < DEM_BLOCK_LANES ? job->patches - from : DEM_BLOCK_LANES;
+    for (size_t i = 0; i < e.count; i++) {
+        e.p[i] = &job->work->patches[job->work->sorted[from + i]];
+        fill_lane(job, &e, i);
+    }
+    for (size_t i = e.count; i < DEM_BLOCK_LANES; i++)
+        fill_idle(job, &e, i);
+    fill_kept(job, &e);
+    for (size_t l = 0; l < e.count; l += DEM_WIDTH)
+        act_lanes(f, job, &e, l);
+    for (size_t i = 0; i < e.count && !job->records; i++) {
+        size_t at = job->s->begin + e.p[i]->place;
+        if (!(e.depth[i] > 0 || e.remembers[i]))
+            continue;
+        remember(job, &e, i);
+        push(momentum + DEM_ROW * (size_t)e.a[i], e.momentum[0][i]);
+        if (job->form < 0)
+            push(momentum + DEM_ROW * (size_t)c->target[at], e.momentum[1][i]);
+        else if (f.reaction) {
+            for (int k = 0; k < 3; k++)
+                c->reaction[k][at] = e.force[k][i];
+            c->hardness[at] = e.hardness[i];
+        }
+    }
+}
+
+// ---- a segment
+
+static void clear_reactions(const soft_job *job)
+{
+    const dem_contact_columns *c = &job->contacts->columns;
+    size_t begin = job->s->begin, bytes = (job->s->end - begin) * sizeof(double);
+    for (int k = 0; k < 3; k++)
+        memset(c->reaction[k] + begin, 0, bytes);
+    memset(c->hardness + begin, 0, bytes);
+}
+
+static void segment(dem_world *w, size_t which, int form, double kick, dem_soft_work *work, dem_contact_record *records)
 {
     dem_contacts *contacts = form < 0 ? &w->contacts : &w->wall_contacts[form];
     const dem_segment *s = &contacts->segments[which];
     if (s->begin == s->end)
         return;
-    dem_features f = soft_features(w);
-    dem_tally *tally = &w->tallies[(size_t)(1 + form) * w->segment_count + which], scratch = {0};
-    const dem_contact_columns *c = &contacts->columns;
-    if (records)
-        tally = &scratch;
+    dem_features f = soft_features(&w->features);
+    dem_tally *tally = &w->tallies[(size_t)(1 + form) * w->segment_count + which], scratch = {.overlap_ratio = 0};
+    soft_job job = {.w = w,
+                    .contacts = contacts,
+                    .s = s,
+                    .form = form,
+                    .kick = kick,
+                    .work = work,
+                    .tally = records ? &scratch : tally,
+                    .records = records};
+    list_kept(&job);
+    job.size = s->end - s->begin;
     const dem_features geometry = {.offset = true, .scaled = true},
                        images = {.offset = true, .scaled = true, .periodic = true};
     if (f.periodic)
-        fill_rows(images, w, contacts, s, form, &tally->overlap_ratio, work);
+        measure(images, &job);
     else
-        fill_rows(geometry, w, contacts, s, form, &tally->overlap_ratio, work);
-    size_t size = s->end - s->begin;
-    for (size_t start = 0, end; start < size; start = end) {
-        size_t first = segment_place(s, start);
-        for (end = start + 1; end < size; end++) {
-            size_t at = segment_place(s, end);
-            bool same =
-                c->a[at] == c->a[first] && (form < 0 ? c->b[at] == c->b[first] : c->sphere_b[at] == c->sphere_b[first]);
-            if (!same || (c->shift && c->shift[at] != c->shift[first]))
-                break;
-        }
-        if (c->a[first] < w->bodies.count)
-            (form == DEM_FORM_MESH ? do_groups : do_patch)(
-                w, f, &(patch_run){contacts, s, form, start, end, work, NULL, 0}, kick, tally, records);
-    }
+        measure(geometry, &job);
+    if (form == DEM_FORM_MESH)
+        find_groups(&job);
+    else
+        find_patches(&job);
+    sort_patches(&job);
+    if (f.reaction && form >= 0 && !records)
+        clear_reactions(&job);
+    for (size_t from = 0; from < job.patches; from += DEM_BLOCK_LANES)
+        act_eight(f, &job, from);
 }
 
 const dem_soft_kernels DEM_LEVEL_OF(dem_soft_kernels) = {.segment = segment};

@@ -1,38 +1,16 @@
-/// What a soft patch does by the laws of the scene, for soft_kernels.c. The laws are those of single contacts, taken
-/// with all lanes alike.
+/// What soft patches do by the laws of the scene, for soft_kernels.c. The laws are those of single contacts, with a
+/// patch in each lane.
 #ifndef DEM_SIM_SOFT_LAW_H
 #define DEM_SIM_SOFT_LAW_H
 
-#include "sim/contacts.h"
 #include "sim/soft_patch.h"
 
 // of a disc, the mean distance of its points from the centre over their radius of gyration; a square has .94, too
 static const double MEAN_ARM = 0.94;
 
-typedef struct soft_result {
-    double net;              // normal force along D [N]
-    dem_vec3 force, moment;  // on a, about its centre [N], [N m]
-    dem_vec3 turning;        // what of the moment on a is not that of the force at the mean point [N m]
-    double elastic_normal, elastic_slide, elastic_turn;  // [J]
-    double lost_friction, lost_viscous;                  // since the last step [J]
-    double strain_a, strain_b;                           // h^2 k + 2 h c over the masses, see timestep.h [-]
-} soft_result;
-
-static inline double first_lane(wide x)
+/// The features that soft contacts can have.
+DEM_INLINE dem_features soft_features(const dem_features *f)
 {
-    double lane[DEM_WIDTH];
-    wide_store(lane, x);
-    return lane[0];
-}
-static inline dem_vec3 first3(wide3 v)
-{
-    return v3(first_lane(v.x), first_lane(v.y), first_lane(v.z));
-}
-
-// the features that soft contacts can have
-static inline dem_features soft_features(const dem_world *w)
-{
-    const dem_features *f = &w->features;
     return (dem_features){.linear = f->linear,
                           .young = f->young,
                           .hertz = f->hertz,
@@ -44,142 +22,177 @@ static inline dem_features soft_features(const dem_world *w)
                           .decay = f->decay,
                           .mindlin = f->mindlin,
                           .slide_damping = f->slide_damping,
-                          .ledger = f->ledger,
-                          .watch = f->watch,
-                          .moving = f->moving,
                           .offset = true,
                           .scaled = true,
-                          .periodic = f->periodic};
+                          .periodic = f->periodic,
+                          .mixed = f->mixed,
+                          .ledger = f->ledger,
+                          .soft = true,
+                          .watch = f->watch,
+                          .moving = f->moving,
+                          .reaction = f->reaction};
 }
 
+/// What patches remember.
+typedef struct soft_memory {
+    wide3 spring, dash;
+    wide twist, patch, loss;
+} soft_memory;
+
+typedef struct soft_result {
+    wide net;                                          // normal force along D [N]
+    wide3 force, moment;                               // on a, about its centre [N], [N m]
+    wide elastic_normal, elastic_slide, elastic_turn;  // [J]
+    wide lost_friction, lost_viscous;                  // since the last step [J]
+    wide strain_a, strain_b;                           // h^2 k + 2 h c over the masses, see timestep.h [-]
+    wide hardness;                                     // of a wall's spring and dashpot over the step [N/m] (reaction)
+} soft_result;
+
 typedef struct soft_spot {
-    const double *law;
-    double reduced, area;  // R* [m]; R_min^2 / (R_a + R_b) [m]
-    double last_step, next_step;
-    double times;  // 2 between bodies, 1 at walls: see timestep.h
+    wide law[LAW_MORE];
+    wide reduced, area;  // R* [m]; R_min^2 / (R_a + R_b) [m]
+    double tau, last_step, next_step;
+    bool wall;
 } soft_spot;
 
-// the dashpot of a patch against what the speeds of its pairs differ by [N s/m]
-static inline double uneven_damping(const dem_features f, const double *law, double stiffness, double mass, double step,
-                                    double elastic, double net)
+// what the parts of the law hand on to each other
+typedef struct soft_dashpots {
+    wide mass, stiffness, elastic;
+    wide uneven;                // against what the speeds of the pairs differ by [N s/m]
+    wide slide, slide_damping;  // tangential stiffness and damping
+} soft_dashpots;
+
+// the constant of the dashpot [N s/m]
+DEM_INLINE wide dashpot(const dem_features f, const wide *law, wide stiffness, wide mass)
 {
-    double c = 0;
+    wide c = wide_all(0);
     if (f.rate)
         c = law[LAW_RATE] * mass;
     if (f.restitution)
-        c += law[LAW_ZETA] * sqrt(stiffness * mass);
+        c = wide_fma(law[LAW_ZETA], wide_sqrt(stiffness * mass), c);
+    return c;
+}
+
+// the dashpot of a patch against what the speeds of its pairs differ by
+DEM_INLINE wide uneven_damping(const dem_features f, const soft_spot *spot, const soft_dashpots *d, wide inverse,
+                               wide net)
+{
+    wide c = dashpot(f, spot->law, d->stiffness, d->mass), zero = wide_all(0), one = wide_all(1);
     // fades as the tail of the whole is cut, so that there is no jump
-    double fades = elastic > 0 ? smaller(1, larger(0, net / elastic)) : 0;
-    return fades * c / (1 + 0.25 * step * c / mass);
+    wide fades = wide_or_zero(wide_less(zero, d->elastic), wide_min(one, wide_max(zero, net / d->elastic)));
+    return fades * c / wide_fma(wide_all(0.25 * spot->last_step), c * inverse, one);
 }
 
 // the spring and the dashpot against twisting: k_t and c_t times the square of the radius of gyration, capped by the
 // points' mean arm
-static inline double twist(const dem_features f, const soft_spot *spot, const soft_whole *p, double slide,
-                           double slide_damping, double cap, double rate, dem_contact_history *h, soft_result *out)
+DEM_INLINE wide twist(const dem_features f, const soft_spot *spot, const soft_whole *p, const soft_dashpots *d,
+                      wide cap, wide rate, soft_memory *m, soft_result *out)
 {
-    double stiffness = p->depth > 0 ? slide * p->gyration * p->gyration : 0, old = h->patch, start = h->twist;
-    double kept = stiffness > old ? old / stiffness : 1, most = cap * MEAN_ARM * p->gyration;
-    double spring = stiffness * (start * kept + spot->last_step * rate);
-    spring = larger(-most, smaller(most, spring));
-    h->twist = stiffness > 0 ? spring / stiffness : 0;
-    h->patch = stiffness;
-    double held = spring * h->twist, damping = p->depth > 0 ? slide_damping * p->gyration * p->gyration : 0;
-    double moment = larger(-most, smaller(most, spring + damping * rate));
-    out->elastic_turn = held / 2;
+    wide zero = wide_all(0), step = wide_all(spot->last_step);
+    wide square = wide_or_zero(wide_less(zero, p->depth), p->gyration * p->gyration), stiffness = d->slide * square;
+    wide old = m->patch, start = m->twist, most = cap * wide_all(MEAN_ARM) * p->gyration, least = zero - most;
+    wide kept = wide_select(wide_less(old, stiffness), old / stiffness, wide_all(1));
+    wide spring = stiffness * wide_fma(start, kept, step * rate);
+    spring = wide_max(least, wide_min(most, spring));
+    m->twist = wide_or_zero(wide_less(zero, stiffness), spring / stiffness);
+    m->patch = stiffness;
+    wide held = spring * m->twist, damping = d->slide_damping * square;
+    wide moment = wide_max(least, wide_min(most, wide_fma(damping, rate, spring)));
+    out->elastic_turn = wide_all(0.5) * held;
     if (f.ledger) {
-        out->lost_friction += 0.5 * (spot->last_step * (spring + old * start) * rate - (held - old * start * start));
-        out->lost_viscous += spot->last_step * (moment - spring) * rate;
+        wide done = step * wide_fma(old, start, spring) * rate, gained = held - old * start * start;
+        out->lost_friction = wide_fma(wide_all(0.5), done - gained, out->lost_friction);
+        out->lost_viscous = wide_fma(step * (moment - spring), rate, out->lost_viscous);
     }
     return moment;
 }
 
-static inline dem_vec3 soft_slide(const dem_features f, const soft_spot *spot, const soft_patch_data *p,
-                                  const soft_whole *s, const wide *law, normal_law *normal, double mass,
-                                  dem_contact_history *h, soft_result *out, double *slide, double *slide_damping)
+// friction at the mean contact point
+DEM_INLINE wide3 soft_slide(const dem_features f, const soft_spot *spot, const soft_lanes *p, const soft_whole *s,
+                            normal_law *normal, soft_dashpots *d, soft_memory *m, soft_result *out)
 {
-    dem_vec3 from_b = v3_sub(s->point, p->between);
-    dem_vec3 v = v3_sub(v3_add(p->b->velocity, v3_cross(p->b->spin, from_b)),
-                        v3_add(p->a->velocity, v3_cross(p->a->spin, s->point)));
-    double vn = v3_dot(v, s->n), turn = 0.5 * spot->last_step * v3_dot(v3_add(p->a->spin, p->b->spin), s->n);
-    dem_vec3 slip = v3_along(v, -vn, s->n);
-    wide3 spring = spring_turn(all3(v3(h->spring[0], h->spring[1], h->spring[2])), all3(s->n), wide_all(turn));
+    wide zero = wide_all(0), half = wide_all(0.5), step = wide_all(spot->last_step);
+    wide3 vb = plus3(p->b.velocity, cross3(p->b.spin, minus3(s->point, p->between)));
+    wide3 v = minus3(vb, plus3(p->a.velocity, cross3(p->a.spin, s->point)));
+    wide vn = dot3(v, s->n), turn = half * step * dot3(plus3(p->a.spin, p->b.spin), s->n);
+    wide3 slip = along3(v, zero - vn, s->n), spring = spring_turn(m->spring, s->n, turn);
+    wide_mask on = wide_less(zero, s->depth);
     // the cap is by the force along the mean normal
-    normal->force = normal->force * wide_all(s->along);
-    friction_law t = friction(f, law, normal, wide_all(spot->reduced), wide_all(s->depth), wide_all(s->speed),
-                              wide_all(mass), spring, all3(slip), wide_all(spot->last_step),
-                              wide_less(wide_all(0), wide_all(s->depth)), wide_less(wide_all(1), wide_all(0)));
-    dem_vec3 after = first3(t.spring), dash = first3(t.dash);
-    *slide = first_lane(t.stiffness);
-    *slide_damping = first_lane(t.damping);
-    out->elastic_slide = 0.5 * *slide * v3_norm2(after);
-    out->lost_friction += first_lane(t.lost);
-    if (f.ledger && f.slide_damping) {
-        dem_vec3 both = v3_add(v3(h->dash[0], h->dash[1], h->dash[2]), dash);
-        out->lost_viscous += 0.5 * spot->last_step * v3_dot(both, slip);
-    }
-    for (int k = 0; k < 3; k++) {
-        h->spring[k] = v3_get(after, k);
-        h->dash[k] = v3_get(dash, k);
-    }
-    return first3(t.force);
+    normal->force = normal->force * s->along;
+    friction_law t = friction(f, spot->law, normal, spot->reduced, s->depth, s->speed, d->mass, spring, slip, step, on,
+                              wide_less(zero, zero));
+    d->slide = t.stiffness;
+    d->slide_damping = t.damping;
+    out->elastic_slide = half * t.stiffness * dot3(t.spring, t.spring);
+    out->lost_friction = out->lost_friction + t.lost;
+    if (f.ledger && f.slide_damping)
+        out->lost_viscous = wide_fma(half * step, dot3(plus3(m->dash, t.dash), slip), out->lost_viscous);
+    m->spring = t.spring;
+    m->dash = t.dash;
+    return t.force;
 }
 
-// what the patch takes of the room for a stable step: along D, what its pairs differ by, sliding and twisting
-static inline void soft_strain(const soft_spot *spot, const soft_patch_data *p, const soft_whole *s, double stiffness,
-                               double per_tau, double c, double slide, double slide_damping, soft_result *out)
+// what a patch takes of the room for a stable step: along D, what its pairs differ by, sliding and twisting
+DEM_INLINE wide soft_strain(const soft_spot *spot, const soft_side *side, const soft_whole *s, const soft_dashpots *d,
+                            wide per_tau, wide share, wide spread)
 {
-    double h = spot->next_step, gyration = s->gyration * s->gyration;
-    for (int k = 0; k < 2; k++) {
-        const soft_side *side = k == 0 ? p->a : p->b;
-        double share = k == 0 ? s->share_a : s->share_b, spread = (k == 0 ? s->spread_a : s->spread_b) - share;
-        double tangent = 2 * side->brisk + gyration * side->quick;
-        double taken = stiffness * share + per_tau * spread + slide * tangent;
-        double damping = c * (share + spread) + slide_damping * tangent;
-        *(k == 0 ? &out->strain_a : &out->strain_b) = spot->times * h * (h * taken + 2 * damping);
-    }
+    wide h = wide_all(spot->next_step), two = wide_all(2);
+    wide tangent = wide_fma(s->gyration * s->gyration, side->quick, two * side->brisk);
+    wide taken = wide_fma(d->stiffness, share, wide_fma(per_tau, spread - share, d->slide * tangent));
+    wide damping = wide_fma(d->uneven, spread, d->slide_damping * tangent);
+    return wide_all(spot->wall ? 1 : 2) * h * wide_fma(h, taken, two * damping);
 }
 
-/// The patch touches, or has just parted: then there is no force, but something may be lost.
-static inline soft_result soft_act(const dem_features f, const soft_spot *spot, const soft_patch_data *p,
-                                   const soft_whole *s, dem_contact_history *h)
+/// Patches that touch, and those that have just parted: then there is no force, but something may be lost.
+DEM_INLINE soft_result soft_act(const dem_features f, const soft_spot *spot, const soft_lanes *p, const soft_whole *s,
+                                soft_memory *m)
 {
-    soft_result out = {0};
-    wide law[LAW_SLOTS];
-    for (int k = 0; k < LAW_SLOTS; k++)
-        law[k] = wide_all(spot->law[k]);
-    double inverse = f.local_mass ? s->share_a + s->share_b : p->a->inverse_mass + p->b->inverse_mass;
-    inverse = larger(inverse, 1e-300);
-    double mass = 1 / inverse, step = spot->last_step > 0 ? spot->last_step : spot->next_step;
-    normal_law normal = normal_elastic(f, law, NULL, wide_all(s->depth), wide_all(spot->reduced), wide_all(spot->area));
-    normal_damp(f, law, &normal, wide_all(inverse), wide_all(mass), wide_all(s->depth), wide_all(s->speed),
-                wide_all(spot->last_step), wide_all(1 / step));
-    double elastic = first_lane(normal.elastic), stiffness = first_lane(normal.stiffness), slide = 0, slide_damping = 0;
-    double c = uneven_damping(f, spot->law, stiffness, mass, spot->last_step, elastic, first_lane(normal.force));
-    out.net = first_lane(normal.force);
-    if (!(s->depth > 0))
-        elastic = out.net = c = 0;  // the patch has just parted, and lets go of what its springs held
+    wide zero = wide_all(0);
+    wide3 none = {zero, zero, zero};
+    soft_result out = {zero, none, none, zero, zero, zero, zero, zero, zero, zero, zero};
+    wide_mask on = wide_less(zero, s->depth);
+    wide inverse = f.local_mass ? s->share_a + s->share_b : p->a.inverse_mass + p->b.inverse_mass;
+    inverse = wide_select(wide_less(wide_all(1e-300), inverse), inverse, wide_all(1e-300));
+    double step = spot->last_step > 0 ? spot->last_step : spot->next_step;
+    soft_dashpots d = {.mass = wide_all(1) / inverse, .uneven = zero, .slide = zero, .slide_damping = zero};
+    normal_law normal = normal_elastic(f, spot->law, NULL, s->depth, spot->reduced, spot->area);
+    normal_damp(f, spot->law, &normal, inverse, d.mass, s->depth, s->speed, wide_all(spot->last_step),
+                wide_all(1 / step));
+    d.stiffness = normal.stiffness;
+    d.elastic = wide_or_zero(on, normal.elastic);
+    out.net = wide_or_zero(on, normal.force);
+    if (f.rate || f.restitution)
+        d.uneven = uneven_damping(f, spot, &d, inverse, out.net);
     // of the linear part F = k d the half, of Hertz' F = 2/3 k d two fifths
-    double linear = f.hertz ? 3 * elastic - 2 * stiffness * s->depth : elastic;
-    out.elastic_normal = s->depth <= 0 ? 0 : (linear / 2 + (elastic - linear) * 2 / 5) * s->depth;
+    wide linear = normal.elastic;
+    if (f.hertz)
+        linear = wide_all(3) * normal.elastic - wide_all(2) * d.stiffness * s->depth;
+    wide mean = wide_fma(wide_all(0.5), linear, wide_all(0.4) * (normal.elastic - linear));
+    out.elastic_normal = wide_or_zero(on, mean * s->depth);
     if (f.ledger && (f.rate || f.restitution)) {
-        double now = elastic - out.net;
-        out.lost_viscous = 0.5 * (h->loss + now) * s->speed * spot->last_step + spot->last_step * c * s->uneven_power;
-        h->loss = now;
+        wide now = d.elastic - out.net, by = wide_all(spot->last_step);
+        out.lost_viscous = by * wide_fma(wide_all(0.5) * (m->loss + now), s->speed, d.uneven * s->uneven_power);
+        m->loss = now;
     }
-    out.force = v3_sub(v3_scale(s->uneven, c), v3_scale(s->normal, out.net));
-    out.moment = v3_sub(v3_scale(s->uneven_turn, c), v3_scale(s->turn, out.net));
+    wide back = zero - out.net;
+    out.force = along3(scale3(s->uneven, d.uneven), back, s->normal);
+    out.moment = along3(scale3(s->uneven_turn, d.uneven), back, s->turn);
     if (f.friction) {
-        dem_vec3 drag = soft_slide(f, spot, p, s, law, &normal, mass, h, &out, &slide, &slide_damping);
-        double cap = spot->law[LAW_FRICTION] * fabs(out.net) * s->along;
-        double rate = v3_dot(v3_sub(p->b->spin, p->a->spin), s->n);
-        double turning = twist(f, spot, s, slide, slide_damping, cap, rate, h, &out);
-        out.force = v3_add(out.force, drag);
-        out.moment = v3_add(out.moment, v3_along(v3_cross(s->point, drag), turning, s->n));
+        wide3 drag = soft_slide(f, spot, p, s, &normal, &d, m, &out);
+        wide cap = spot->law[LAW_FRICTION] * wide_abs(out.net) * s->along;
+        wide rate = dot3(minus3(p->b.spin, p->a.spin), s->n);
+        wide turning = twist(f, spot, s, &d, cap, rate, m, &out);
+        out.force = plus3(out.force, drag);
+        out.moment = plus3(out.moment, along3(cross3(s->point, drag), turning, s->n));
     }
-    out.turning = v3_sub(out.moment, v3_cross(s->point, out.force));
-    if (f.watch)
-        soft_strain(spot, p, s, stiffness, larger(out.net, elastic) / p->tau, c, slide, slide_damping, &out);
+    if (f.watch) {
+        wide per_tau = wide_max(out.net, d.elastic) * wide_all(1 / spot->tau);
+        out.strain_a = soft_strain(spot, &p->a, s, &d, per_tau, s->share_a, s->spread_a);
+        out.strain_b = soft_strain(spot, &p->b, s, &d, per_tau, s->share_b, s->spread_b);
+    }
+    if (f.reaction)
+        out.hardness =
+            wide_or_zero(on, wide_fma(dashpot(f, spot->law, d.stiffness, d.mass), wide_all(1 / step), d.stiffness));
     return out;
 }
 

@@ -66,11 +66,6 @@ static dem_touch touch_of(const dem_world *w, const patch_members *m, size_t k)
     return m->form < 0 ? dem_touch_of_pair(w, at) : dem_touch_of_wall(w, (dem_wall_form)m->form, at);
 }
 
-static double weight_of(const dem_world *w, uint32_t row, uint32_t sphere)
-{
-    return w->soft.weights[w->soft.first[row] + sphere - w->templates.items[w->bodies.shape[row]].first];
-}
-
 static bool belongs(const patch_members *m, const dem_touch *t)
 {
     return m->form != DEM_FORM_MESH || soft_group(&m->leaders, t->normal) == m->group;
@@ -98,9 +93,9 @@ static void gather(const dem_world *w, const patch_members *m, double deepest, p
         dem_touch t = touch_of(w, m, k);
         if (t.overlap <= -DEM_SOFT_REACH * tau || !belongs(m, &t))
             continue;
-        double weight = weight_of(w, c->a[t.place], c->sphere_a[t.place]);
+        double weight = soft_weight(&w->soft, c->a[t.place], c->sphere_a[t.place]);
         if (m->form < 0)
-            weight *= weight_of(w, c->b[t.place], c->sphere_b[t.place]);
+            weight *= soft_weight(&w->soft, c->b[t.place], c->sphere_b[t.place]);
         double e = weight * exp((t.overlap - deepest) / tau);
         dem_vec3 from_a = v3_sub(t.point, body_position(&w->bodies, c->a[t.place]));
         for (int side = 0; side < (m->form < 0 ? 2 : 1); side++) {

@@ -89,7 +89,8 @@ typedef struct dem_pairs {
 typedef struct dem_segment {
     size_t begin, end, capacity;                   ///< multiples of 8
     size_t slot_begin, slot_count, slot_capacity;  ///< momenta for bodies of other domains
-    bool dirty;
+    size_t across;  ///< blocks that neighbours in the list are dealt to
+    bool dirty, fresh;  ///< fresh: the list has changed, and runs are not known yet (soft)
 } dem_segment;
 
 typedef struct dem_contacts {
@@ -98,6 +99,7 @@ typedef struct dem_contacts {
     dem_segment *segments;
     uint32_t *slot_body;  ///< [slots] whose momentum a slot belongs to
     size_t slot_capacity;
+    dem_soft_runs *runs;  ///< [segments] (soft)
 } dem_contacts;
 
 /// Sphere pairs that a refresh has found, by thread.
@@ -245,11 +247,16 @@ struct dem_world {
 };
 
 /// The k-th contact of a segment's list: neighbours in the list stand in different blocks of 8, so that the lanes of a
-/// block mostly hit different bodies.
+/// block mostly hit different bodies. Soft contacts stand one after the other: their sums are over neighbours.
 static inline size_t segment_place(const dem_segment *s, size_t k)
 {
-    size_t blocks = (s->end - s->begin) / DEM_BLOCK_LANES;
-    return s->begin + (k % blocks) * DEM_BLOCK_LANES + k / blocks;
+    return s->begin + (k % s->across) * DEM_BLOCK_LANES + k / s->across;
+}
+static inline void segment_set_end(dem_segment *s, size_t count, bool soft)
+{
+    s->end = s->begin + count;
+    s->across = soft ? 1 : count / DEM_BLOCK_LANES;
+    s->fresh = true;
 }
 
 static inline double *body_pose(const dem_bodies *b, size_t row)

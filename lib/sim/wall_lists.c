@@ -110,6 +110,21 @@ static void take_springs(const dem_contacts *contacts, const dem_segment *s, siz
     }
 }
 
+// what the first one at each wall remembers stands for all
+static void take_soft_springs(const dem_contacts *contacts, const dem_segment *s, size_t k, size_t end,
+                              dem_contact_item *items, size_t count)
+{
+    const dem_contact_columns *c = &contacts->columns;
+    for (size_t i = 0; i < count; i++) {
+        if (i > 0 && items[i].sphere_b == items[i - 1].sphere_b)
+            continue;
+        while (k < end && c->sphere_b[segment_place(s, k)] < items[i].sphere_b)
+            k++;
+        if (k < end && c->sphere_b[segment_place(s, k)] == items[i].sphere_b)
+            items[i].history = dem_history_get(c, segment_place(s, k));
+    }
+}
+
 static bool expired(const dem_world *w, size_t row)
 {
     return !(w->bodies.path[row] + w->wall_path <= w->bodies.wall_limit[row]);
@@ -170,7 +185,8 @@ static void look_at_form(wall_look *look, size_t segment, dem_wall_form form, co
             size_t touches = list.touches.count;
             look_at_body(look, row, &list, &slack[row - rows]);
             if (look->count > begin)
-                take_springs(contacts, s, from, old, look->items + begin, look->count - begin);
+                (w->features.soft && form != DEM_FORM_MESH ? take_soft_springs : take_springs)(
+                    contacts, s, from, old, look->items + begin, look->count - begin);
             if (form == DEM_FORM_MESH && !look->failed)
                 look->failed |= !dem_mesh_touch_remember(&w->mesh_touches[segment], &list.touches, touches);
         } else {
@@ -234,7 +250,7 @@ static bool put_lists(wall_look *look, dem_wall_form form, size_t *needed)
         const dem_contact_item *items = list->count ? look->items + list->begin : NULL;
         good = dem_extras_keep(&extras, s, items, list->count, &kept);
         size_t full = (list->count + DEM_BLOCK_LANES - 1) / DEM_BLOCK_LANES * DEM_BLOCK_LANES;
-        s->end = s->begin + full;
+        segment_set_end(s, full, w->features.soft);
         s->dirty = false;
         for (size_t k = 0; k < full; k++)
             dem_contact_put(&contacts->columns, segment_place(s, k),

@@ -331,9 +331,9 @@ void dem_world_destroy(dem_world *w)
     dem_bodies_release(&w->bodies);
     dem_pairs_release(&w->pairs);
     dem_search_destroy(w->search);
-    dem_contacts_release(&w->contacts);
+    dem_contacts_release(&w->contacts, w->segment_count);
     for (int form = 0; form < DEM_WALL_FORMS; form++)
-        dem_contacts_release(&w->wall_contacts[form]);
+        dem_contacts_release(&w->wall_contacts[form], w->segment_count);
     for (size_t i = 0; w->mesh_touches && i < w->segment_count; i++)
         dem_mesh_touches_release(&w->mesh_touches[i]);
     for (int t = 0; w->candidates && t < w->threads; t++) {
