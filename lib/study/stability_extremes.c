@@ -96,14 +96,14 @@ static void spin_landing(dem_trial *t)
         dem_body_def *b = model_body(m, shape, v3(0, 0, 1.001 * r));
         b->spin = clump ? v3(speed, 0, 0) : v3(0, speed, 0);
         dem_trial_start(t);
-        dem_trial_step(t, 200000);
+        dem_trial_step(t, 60000);
         dem_motion end = dem_trial_body(t, 0);
         dem_expect(t, isfinite(v3_norm(end.velocity)) && isfinite(v3_norm(end.spin)), 1, 0, "", "%s: finite", name);
         dem_expect_most(t, quaternion_off(&end), 1e-12, "", "%s: norm of the quaternion, off by", name);
         dem_expect_most(t, fabs(dem_trial_figures(t)->energy.error), 1e-2, "", "%s: energy off by", name);
         dem_expect_most(t, dem_trial_figures(t)->largest_overlap_ratio, 0.1, "", "%s: largest overlap over radius",
                         name);
-        // 70 ms of friction: 0.5 g t of speed, 5/2 of it taken off the surface's 100 m/s
+        // 0.5 g t of speed, far from the 100 m/s of the surface
         double v = 0.5 * 9.81 * dem_trial_time(t);
         if (!clump)
             dem_expect(t, end.velocity.x / v, 1, 0.02, "", "sphere: speed over mu g t, it still slides");
@@ -181,7 +181,7 @@ const dem_case dem_stability_extremes[] = {
      inertia},
     {"extreme-spin", "1e5 rad/s, free", "PHYSICS 6.4: conserved quantities", false, spin_free},
     {"extreme-landing", "1e5 rad/s, on a rough plane", "energy; mu g t", false, spin_landing},
-    {"extreme-gravity", "a heap under 1000 times its weight", "weight; energy", false, gravity},
+    {"extreme-gravity", "a heap under 1000 times its weight", "weight; energy", true, gravity},
     {"extreme-spheres", "clumps of 1 to 1000 spheres thrown about in a box", "energy", false, thousand},
     {0},
 };

@@ -160,7 +160,7 @@ static void clumps(dem_trial *t)
 const dem_case dem_stability_packings[] = {
     {"packing-crystal", "108 spheres of a face-centred cubic crystal", "phonons at X; PHYSICS 4", false, crystal},
     {"packing-spheres", "64 spheres at rest in a box", "PHYSICS 4: bound by bodies", false, spheres},
-    {"packing-clumps", "64 clumps with many contacts to a pair, at rest in a box", "PHYSICS 4: bound by bodies", false,
+    {"packing-clumps", "64 clumps with many contacts to a pair, at rest in a box", "PHYSICS 4: bound by bodies", true,
      clumps},
     {0},
 };

@@ -140,8 +140,8 @@ static void try_far(dem_trial *t, const physics *kinds, size_t count, int looks)
             dem_expect_most(t, (double)f.missed, 0, "", "%s, %s: contacts missed or doubled", kind, p->name);
             dem_expect_most(t, f.energy, 1e-2, "", "%s, %s: energy off by", kind, p->name);
             dem_expect_most(t, f.deepest, 0.1, "", "%s, %s: largest overlap over radius", kind, p->name);
-            // positions have 1e-10 m there: 2e-6 N of 2e4 N/m, of weights of 0.04 N; single grains still roll
-            dem_expect(t, f.borne, 1, 1e-2, "", "%s, %s: walls bear, of the weight", kind, p->name);
+            // positions have 1e-10 m there: 2e-6 N of 2e4 N/m, of weights of 0.04 N; one or two grains still rock
+            dem_expect(t, f.borne, 1, 5e-2, "", "%s, %s: walls bear, of the weight", kind, p->name);
             // another way to the same heap
             dem_expect(t, f.mean.z / near.mean.z, 1, 0.1, "", "%s, %s: height of the heap, of that at the origin", kind,
                        p->name);
