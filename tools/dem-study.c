@@ -2,6 +2,7 @@
 #include <string.h>
 
 #include "cli.h"
+#include "study_convergence.h"
 #include "study_lab.h"
 #include "study_mohr.h"
 #include "study_suite.h"
@@ -14,6 +15,7 @@ typedef struct subcommand {
 static const subcommand subcommands[] = {
     {"verify", study_verify},
     {"stability", study_stability},
+    {"convergence", study_convergence},
     {"mohr-coulomb", study_mohr_coulomb},
     {"scene", study_scene},
     {"test", study_test},
@@ -36,20 +38,22 @@ int main(int argc, char **argv)
             return subcommands[i].run(argc - 1, argv + 1);
     static const char about[] =
         "Studies of what can be relied on. Each is a word with options of its own: verify compares what the engine "
-        "computes with what is known; stability finds where runs become unstable and tries extreme scenes; "
+        "computes with what is known; stability finds where runs become unstable and tries extreme scenes; convergence "
+        "measures what the step and the schemes of integration do to a scene and what they cost; "
         "mohr-coulomb fits friction angle and cohesion to the strengths of tests; scene and "
         "test write and do measured tests of granular matter.";
     static const char epilogue[] =
         "Examples:\n"
         "  dem-study verify                 cases with a known answer\n"
         "  dem-study stability              limits of the step and extreme scenes\n"
+        "  dem-study convergence sand.json  error against the step and run time\n"
         "  dem-study mohr-coulomb tests.csv friction angle and cohesion\n"
         "  dem-study test heap              angle of repose of a grain\n"
         "  dem-study verify --help          how to choose them, and where the table can go\n"
         "Exit status: 0 done, 1 a study found a failure, 2 wrong usage, 3 bad input, 4 cannot write, 130 interrupted.";
     cli_common common = CLI_COMMON_DEFAULTS;
     const cli_option options[] = {CLI_COMMON_OPTIONS(common)};
-    const cli_tool tool = {"dem-study", "verify|stability|mohr-coulomb|scene|test [options]", about,
+    const cli_tool tool = {"dem-study", "verify|stability|convergence|mohr-coulomb|scene|test [options]", about,
                            options,     sizeof options / sizeof *options, epilogue};
     cli_texts words = {0};
     int status;

@@ -11,6 +11,13 @@ double dem_clock(void)
     return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
 }
 
+double dem_clock_thread(void)
+{
+    struct timespec t;
+    clock_gettime(CLOCK_THREAD_CPUTIME_ID, &t);
+    return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
+}
+
 void dem_laps_begin(dem_laps *laps)
 {
     *laps = (dem_laps){.last = dem_clock()};

@@ -6,6 +6,8 @@
 
 /// Seconds since some moment; never goes back.
 double dem_clock(void);
+/// Seconds the processor has spent on this thread.
+double dem_clock_thread(void);
 
 enum { DEM_LAPS = 12 };
 

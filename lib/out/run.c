@@ -329,17 +329,10 @@ static dem_status open_outputs(runner *r, double resume, dem_error *error)
                               resume};
         DEM_TRY(dem_frames_open(&def, &r->frames, error));
     }
-    if (o->series > 0)
-        DEM_TRY(dem_series_open(
-            &(dem_series_def){.directory = o->directory,
-                              .flow = r->w->population != NULL,
-                              .walls = r->scene->walls,
-                              .wall_count = r->scene->wall_count,
-                              .measures = r->scene->measures,
-                              .measure_count = r->scene->measure_count,
-                              .bonds = r->scene->bond_count > 0,
-                              .lost = r->scene->bond_count && r->scene->domain.leaving == DEM_LEAVING_DELETE},
-            resume, &r->series, error));
+    if (o->series > 0) {
+        dem_series_def def = dem_series_def_of(r->scene, o->directory, r->w->population != NULL);
+        DEM_TRY(dem_series_open(&def, resume, &r->series, error));
+    }
     if (o->contacts > 0)
         DEM_TRY(dem_network_open(o->directory, "contacts", &r->scene->domain, r->queue, resume, &r->network, error));
     if (o->frames > 0 && r->scene->bond_count)

@@ -19,7 +19,8 @@ typedef struct wall_columns {
 } wall_columns;
 
 struct dem_series {
-    char *path;
+    char *path;       // NULL: kept in `text`
+    dem_buffer text;
     int file;
     size_t size;  // bytes of whole rows
     size_t rows, columns, wall_count, measure_count;  // columns: of the whole
@@ -235,6 +236,10 @@ static dem_status cannot_write(const dem_series *s, dem_error *error)
 
 static dem_status begin(dem_series *s, const dem_buffer *head, double resume, dem_error *error)
 {
+    if (!s->path) {
+        dem_buffer_bytes(&s->text, head->data, head->size);
+        return s->text.failed ? dem_fail_memory(error) : DEM_OK;
+    }
     if (isnan(resume) || access(s->path, F_OK) != 0) {
         DEM_TRY(dem_file_write(s->path, head->data, head->size, error));
         s->size = head->size;
@@ -252,13 +257,26 @@ static dem_status begin(dem_series *s, const dem_buffer *head, double resume, de
     return DEM_OK;
 }
 
+dem_series_def dem_series_def_of(const dem_scene *scene, const char *directory, bool flow)
+{
+    return (dem_series_def){.directory = directory,
+                            .flow = flow,
+                            .walls = scene->walls,
+                            .wall_count = scene->wall_count,
+                            .measures = scene->measures,
+                            .measure_count = scene->measure_count,
+                            .bonds = scene->bond_count > 0,
+                            .lost = scene->bond_count && scene->domain.leaving == DEM_LEAVING_DELETE};
+}
+
 dem_status dem_series_open(const dem_series_def *def, double resume, dem_series **series, dem_error *error)
 {
     dem_buffer head = {0};
     dem_series *s = *series = dem_alloc_zero(1, sizeof *s);
     if (!s)
         return dem_fail_memory(error);
-    *s = (dem_series){.path = dem_path_join(def->directory, "series.csv"),
+    const char *folder = def->directory;
+    *s = (dem_series){.path = folder ? dem_path_join(folder, "series.csv") : NULL,
                       .file = -1,
                       .columns = COLUMNS + (def->flow ? FLOW_COLUMNS : 0),
                       .wall_count = def->wall_count,
@@ -268,7 +286,9 @@ dem_status dem_series_open(const dem_series_def *def, double resume, dem_series 
     s->walls = dem_alloc(def->wall_count, sizeof *s->walls);
     for (size_t i = 0; s->walls && i < def->wall_count; i++)
         s->walls[i] = columns_of(&def->walls[i]);
-    dem_status status = s->path && s->walls ? dem_folder_create(def->directory, error) : dem_fail_memory(error);
+    dem_status status = s->walls && (s->path || !folder) ? DEM_OK : dem_fail_memory(error);
+    if (status == DEM_OK && folder)
+        status = dem_folder_create(folder, error);
     if (status == DEM_OK)
         status = put_head(&head, def, error);
     if (status == DEM_OK)
@@ -285,6 +305,11 @@ dem_status dem_series_open(const dem_series_def *def, double resume, dem_series 
 
 static dem_status append(dem_series *s, const dem_buffer *row, dem_error *error)
 {
+    if (!s->path) {
+        dem_buffer_bytes(&s->text, row->data, row->size);
+        s->rows++;
+        return s->text.failed ? dem_fail_memory(error) : DEM_OK;
+    }
     for (size_t done = 0; done < row->size;) {
         ssize_t put = write(s->file, row->data + done, row->size - done);
         if (put < 0 && errno == EINTR)
@@ -310,6 +335,11 @@ dem_status dem_series_write(dem_series *s, const dem_figures *figures, const dem
     return status;
 }
 
+const char *dem_series_text(const dem_series *s)
+{
+    return s->path || s->text.failed ? NULL : s->text.data;
+}
+
 size_t dem_series_rows(const dem_series *s)
 {
     return s->rows;
@@ -322,6 +352,7 @@ void dem_series_close(dem_series *s)
     if (s->file >= 0)
         close(s->file);
     free(s->path);
+    dem_buffer_release(&s->text);
     free(s->walls);
     free(s);
 }

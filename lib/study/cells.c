@@ -20,6 +20,7 @@ typedef struct study {
     dem_cell_result *results;
     size_t *todo, count;
     atomic_size_t next, done;
+    _Atomic double told;  // how far: several cells are under way, and none of them knows of the others
     atomic_bool stop;
 } study;
 
@@ -97,9 +98,11 @@ static dem_status keep(const dem_cells_def *def, size_t cell, const char *inputs
 static bool cell_progress(void *user, const char *what, double fraction)
 {
     cell_view *v = user;
-    double done = (double)v->s->done + fraction;
+    double done = ((double)v->s->done + fraction) / (double)v->s->count;
     (void)what;
-    return v->s->stop || dem_progress(v->s->ctx, "cells", done / (double)v->s->count);
+    if (done > v->s->told)
+        v->s->told = done;
+    return v->s->stop || dem_progress(v->s->ctx, "cells", v->s->told);
 }
 
 static void cell_log(void *user, dem_log_level level, const char *subject, const char *text)
@@ -144,7 +147,9 @@ static void run_some(void *user, int part)
         dem_cell_result *r = &s->results[s->todo[i]];
         r->status = run_cell(s, s->todo[i], r, &r->error);
         size_t done = atomic_fetch_add(&s->done, 1) + 1;
-        bool asked = dem_progress(s->ctx, "cells", (double)done / (double)s->count);
+        if ((double)done / (double)s->count > s->told)
+            s->told = (double)done / (double)s->count;
+        bool asked = dem_progress(s->ctx, "cells", s->told);
         if (asked || r->status == DEM_INTERRUPTED || r->status == DEM_CANNOT_WRITE)
             s->stop = true;
     }

@@ -64,6 +64,43 @@ run 3 dem-study mohr-coulomb none.csv
 mentions 'none.csv:3: sigma3 is no number'
 run 2 dem-study mohr-coulomb tests.csv --unit mm
 mentions '-unit: '
+
+# ---- convergence
+run 0 dem-study convergence --list
+prints '^free-top '
+run 0 dem-study convergence free-top --integrators lsym4,central+pcdm --levels 3 --error 1 -o top
+prints '^central\+lsym +2\.00 '
+prints '^central\+lsym4 +(3\.9|4\.0)'
+prints '^  -D time\.step=0\.0714285714285714'
+head -1 top/errors.csv | grep -q '^scheme,step_s,steps,steps_per_contact,processor_s,failed,state,state_doubt,' ||
+    fail 'head of errors.csv'
+[ "$(wc -l <top/errors.csv)" = 10 ] || fail 'not nine points'
+grep -q '^central+pcdm,orientation,' top/orders.csv || fail 'orders.csv'
+python3 -c 'import xml.dom.minidom; xml.dom.minidom.parse("top/convergence.html")' || fail 'convergence.html is no XML'
+# what was there is taken; what an interruption has left is made up for, to the same pages but for the seconds
+cp -r top again
+run 0 dem-study convergence free-top --integrators lsym4,central+pcdm --levels 3 --error 1 -o top -q
+[ ! -s out ] || fail 'something is said though -q'
+for file in errors.csv orders.csv convergence.html; do
+    cmp -s top/$file again/$file || fail "$file changes"
+done
+rm again/cells/000[257].json again/*.csv
+run 0 dem-study convergence free-top --integrators lsym4,central+pcdm --levels 3 --error 1 -o again --json
+cut -d, -f1-4,6- top/errors.csv >a && cut -d, -f1-4,6- again/errors.csv >b && cmp -s a b || fail 'gone on, errors differ'
+python3 -c 'import json; d = json.load(open("out")); assert len(d["points"]) == 9 and not d["chaotic"]
+assert d["override"].startswith("-D time.step=") and d["orders"][0]["points"] == 3' || fail 'JSON of convergence'
+run 0 dem-study convergence free-top --levels 3 -o jobs --cell 1
+prints '^1 of 6 cells are there'
+run 2 dem-study convergence free-top --levels 3 -o jobs --cell 6
+says 'dem-study convergence: error: there is no cell 6; there are 0 to 5'
+run 1 dem-study convergence free-top --levels 2 --error 1e-9 -o top2
+prints '^No setting of these'
+run 2 dem-study convergence free-top --of heat -o top
+mentions "the series has no column 'heat'"
+run 2 dem-study convergence free-top --integrators rk4
+mentions "there is no integrator 'rk4'"
+run 3 dem-study convergence none.json
+run 4 dem-study convergence free-top --levels 2 -o /dev/null/x
 finish
 
 # ---- stability
