@@ -40,8 +40,11 @@ DEM_INLINE void put_rows(soft_job *job, size_t at, const contact_batch *batch, s
 {
     wide overlap = wide_load(batch->at[AT_OVERLAP] + g), row[8];
     wide3 n = get3(batch, AT_NORMAL, g), arm = get3(batch, AT_A, g);
-    if (job->form == DEM_FORM_MESH)  // places that are not in use have no normal
-        overlap = wide_select(wide_less(wide_all(0.5), dot3(n, n)), overlap, wide_all(DEM_SOFT_APART));
+    if (job->form == DEM_FORM_MESH) {  // places that are not in use say so, or have no normal yet
+        wide none = wide_all(DEM_MESH_NO_OVERLAP);
+        wide_mask used = wide_either(wide_less(none, overlap), wide_less(overlap, none));
+        overlap = wide_select(wide_and(used, wide_less(wide_all(0.5), dot3(n, n))), overlap, wide_all(DEM_SOFT_APART));
+    }
     wide_store(job->work->overlap + at, overlap);
     row[ROW_OVERLAP] = overlap;
     row[ROW_NORMAL] = n.x;
