@@ -105,36 +105,16 @@ DEM_INLINE void put_turning_records(size_t g, wide3 moment, wide held, dem_conta
 }
 
 /// What a contact takes of the room for a stable step, times the mass (timestep.h): h^2 k + 2 h c, all directions.
-DEM_INLINE wide contact_strain(const dem_features f, const wide *law, const normal_law *n, wide mass, wide step,
+/// `slide`, `slide_damping`: of the tangential spring and dashpot.
+DEM_INLINE wide contact_strain(const dem_features f, const normal_law *n, wide slide, wide slide_damping, wide step,
                                const bool wall)
 {
-    wide k = n->stiffness, c = wide_all(0);
-    if (f.friction) {
-        wide slide = wide_fma(law[LAW_SLIDE_RATIO], k, law[LAW_SLIDE_STIFFNESS]);
-        if (f.mindlin)
-            slide = wide_fma(law[LAW_SLIDE_HERTZ], n->radius, slide);
+    wide k = n->stiffness, c = n->damping;
+    if (f.friction)
         k = wide_fma(wide_all(2), slide, k);
-        if (f.slide_damping && f.rate)
-            c = wide_all(2) * (law[LAW_SLIDE_RATE] * mass);
-        if (f.slide_damping && f.restitution)
-            c = wide_fma(wide_all(2) * law[LAW_SLIDE_ZETA], wide_sqrt(slide * mass), c);
-    }
-    if (f.rate)
-        c = wide_fma(law[LAW_RATE], mass, c);
-    if (f.restitution)
-        c = wide_fma(law[LAW_ZETA], wide_sqrt(n->stiffness * mass), c);
+    if (f.friction && f.slide_damping)
+        c = wide_fma(wide_all(2), slide_damping, c);
     return wide_all(wall ? 1 : 2) * (step * wide_fma(step, k, c + c));
-}
-
-/// What a wall that moves by d in a step meets, over d: the spring and the dashpot.
-DEM_INLINE wide contact_hardness(const dem_features f, const wide *law, const normal_law *n, wide mass, wide per_step)
-{
-    wide c = wide_all(0);
-    if (f.rate)
-        c = law[LAW_RATE] * mass;
-    if (f.restitution)
-        c = wide_fma(law[LAW_ZETA], wide_sqrt(n->stiffness * mass), c);
-    return wide_fma(c, per_step, n->stiffness);
 }
 
 typedef struct contact_moment {
@@ -188,6 +168,13 @@ DEM_INLINE wide_mask jkr_holds(const jkr_pair *surfaces, wide overlap, wide atta
     return wide_less(wide_or_zero(wide_less(wide_all(0), attached), end * reduced), overlap);
 }
 
+/// The spring of a step ago, turned with the contact.
+DEM_INLINE void contact_spring(const dem_contact_job *job, size_t at, size_t g, contact_batch *batch)
+{
+    wide turn = wide_all(job->last_step) * wide_load(batch->at[AT_TURN] + g);
+    put3(batch, AT_SPRING, g, spring_turn(load3(job->columns.spring, at), get3(batch, AT_NORMAL, g), turn));
+}
+
 DEM_INLINE void contact_law(const dem_features f, const dem_rows *rows, const dem_contact_job *job, size_t at, size_t g,
                             contact_batch *batch, const bool wall, const bool record)
 {
@@ -207,19 +194,17 @@ DEM_INLINE void contact_law(const dem_features f, const dem_rows *rows, const de
     wide3 n = get3(batch, AT_NORMAL, g), v = get3(batch, AT_VELOCITY, g);
     // at the start nothing has passed; the step to come is as good
     wide per_step = wide_all(1 / (job->last_step > 0 ? job->last_step : job->next_step));
-    wide vn = dot3(v, n), inverse_mass = zero, mass = zero, area = zero, step = wide_all(job->last_step);
-    if (damped(f)) {
-        inverse_mass = wide_load(batch->at[AT_MASS] + g);
-        mass = wide_all(1) / inverse_mass;
-    }
+    wide vn = dot3(v, n), area = zero, step = wide_all(job->last_step);
+    contact_mass mass = {zero, zero, zero};
+    if (damped(f))
+        mass = get_mass(f, batch, g);
     if (f.young)
         area = wide_load(batch->at[AT_AREA] + g);
     normal_law normal = normal_elastic(f, law, &surfaces, overlap, reduced, area);
     bond_law bonds = {on, on, zero, zero};
     if (f.bonded) {
-        wide3 held_by = spring_turn(load3(c->spring, at), n, step * wide_load(batch->at[AT_TURN] + g));
-        bonds = bond(law, &normal, wide_load(c->bond + at), reduced, overlap, vn, held_by, along3(v, zero - vn, n),
-                     step, !(job->last_step > 0));
+        bonds = bond(law, &normal, wide_load(c->bond + at), reduced, overlap, vn, get3(batch, AT_SPRING, g),
+                     against3(v, vn, n), step, !(job->last_step > 0));
         on = wide_either(on, bonds.on);
         // neither a tail nor a beginning
         law[LAW_FLOOR] = wide_select(bonds.holds, wide_all(-INFINITY), law[LAW_FLOOR]);
@@ -227,7 +212,7 @@ DEM_INLINE void contact_law(const dem_features f, const dem_rows *rows, const de
         if (!record)
             wide_store(c->bond + at, bonds.state);
     }
-    normal_damp(f, law, &normal, inverse_mass, mass, gone, vn, step, per_step);
+    normal_damp(f, law, &normal, &mass, gone, vn, step, per_step);
 
     wide weight = f.weighted ? wide_load(c->weight + at) : wide_all(1);
     wide3 force = {zero, zero, zero}, spring = force;
@@ -235,10 +220,9 @@ DEM_INLINE void contact_law(const dem_features f, const dem_rows *rows, const de
     wide slide_before = zero, slide_damping = zero;
     contact_loss loss = {zero, zero, bonds.released};
     if (f.friction) {
-        wide turn = step * wide_load(batch->at[AT_TURN] + g);
-        spring = spring_turn(load3(c->spring, at), n, turn);
-        wide3 slip = along3(v, zero - vn, n);
-        friction_law t = friction(f, law, &normal, reduced, overlap, vn, mass, spring, slip, step, on, bonds.holds);
+        spring = get3(batch, AT_SPRING, g);
+        wide3 slip = against3(v, vn, n);
+        friction_law t = friction(f, law, &normal, reduced, overlap, vn, &mass, spring, slip, step, on, bonds.holds);
         force = t.force;
         spring = t.spring;
         slide = t.stiffness;
@@ -264,7 +248,7 @@ DEM_INLINE void contact_law(const dem_features f, const dem_rows *rows, const de
         net = net - pull.force;
         pulled = pull.energy;
     }
-    force = or_zero3(on, along3(force, zero - net, n));
+    force = or_zero3(on, against3(force, net, n));
     if (f.ledger && damped(f)) {
         wide now = wide_or_zero(on, normal.elastic - normal.force), was = wide_load(c->loss + at);
         loss.viscous = loss.viscous + wide_all(0.5) * (was + now) * (vn * step);
@@ -285,7 +269,7 @@ DEM_INLINE void contact_law(const dem_features f, const dem_rows *rows, const de
     }
     dem_contact_record *records = record ? job->records + (at - g - job->begin) : NULL;
     if (record)
-        put_records(f, batch, g, &normal, net, pulled, &force, &spring, slide, mass, weight, on, records);
+        put_records(f, batch, g, &normal, net, pulled, &force, &spring, slide, mass.mass, weight, on, records);
     wide power = zero;  // of a moving wall
     if (turns(f)) {
         wide before = wide_fma(vn, step, overlap), patch = normal.radius;
@@ -320,12 +304,13 @@ DEM_INLINE void contact_law(const dem_features f, const dem_rows *rows, const de
         wide_store(batch->at[AT_BOUND] + g, wide_or_zero(on, bound * wide_all(job->kick)));
     }
     if (f.watch) {
-        wide strain = contact_strain(f, law, &normal, mass, wide_all(job->next_step), wall);
+        wide strain = contact_strain(f, &normal, slide, slide_damping, wide_all(job->next_step), wall);
         wide_store(batch->at[AT_STRAIN] + g, wide_or_zero(on, strain));
     }
     if (wall && f.reaction) {
         store3(c->reaction, at, force);
-        wide hardness = contact_hardness(f, law, &normal, mass, per_step);
+        // what a wall that moves by d in a step meets, over d: the spring and the dashpot
+        wide hardness = wide_fma(normal.damping, per_step, normal.stiffness);
         wide_store(c->hardness + at, wide_or_zero(on, hardness * weight));
     }
     force = scale3(force, wide_all(job->kick));
@@ -338,22 +323,51 @@ DEM_INLINE void contact_law(const dem_features f, const dem_rows *rows, const de
     }
 }
 
-/// `least`, `brisk`: lanes of the body's 1 / least mass and 1 / least moment; `sign`: of its share of the moment.
-DEM_INLINE void scatter(const dem_features f, const dem_rows *rows, const contact_batch *batch, size_t g, int least,
-                        int brisk, const uint32_t *row, wide3 impulse, wide3 arm, const double sign)
+/// Adds the impulse to the momenta of the first bodies, or takes it from those of the second.
+DEM_INLINE void scatter(const dem_features f, const dem_rows *rows, const contact_batch *batch, size_t g,
+                        const uint32_t *row, const bool second)
 {
-    wide3 moment = cross3(arm, impulse);
+    wide3 impulse = get3(batch, AT_FORCE, g), moment = cross3(get3(batch, second ? AT_B : AT_A, g), impulse);
     wide strain = wide_all(0), bound = strain;
     if (turns(f))
-        moment = along3(moment, wide_all(sign), get3(batch, AT_MOMENT, g));
+        moment = along3(moment, wide_all(1), get3(batch, AT_MOMENT, g));
     if (f.watch)
-        strain = wide_load(batch->at[AT_STRAIN] + g) * wide_load(batch->at[least] + g);
+        strain = wide_load(batch->at[AT_STRAIN] + g) * wide_load(batch->at[second ? AT_LEAST_B : AT_LEAST_A] + g);
     if (f.watch && turns(f))
-        strain = wide_fma(wide_load(batch->at[AT_TURN_STRAIN] + g), wide_load(batch->at[brisk] + g), strain);
+        strain = wide_fma(wide_load(batch->at[AT_TURN_STRAIN] + g),
+                          wide_load(batch->at[second ? AT_BRISK_B : AT_BRISK_A] + g), strain);
     if (f.roll_bound)
         bound = wide_load(batch->at[AT_BOUND] + g);
+    if (second) {
+        strain = wide_all(0) - strain;
+        bound = wide_all(0) - bound;
+    }
     wide columns[8] = {impulse.x, impulse.y, impulse.z, moment.x, moment.y, moment.z, strain, bound};
-    rows_add(rows->momentum, row, columns);
+    rows_add(rows->momentum, row, columns, second);
+}
+
+DEM_INLINE void wall_side(const dem_features f, const dem_rows *rows, const dem_contact_columns *c,
+                          const dem_wall_form form, size_t from, size_t count, contact_batch *batch, double *largest)
+{
+    for (size_t g = 0; g < count; g += DEM_WIDTH)
+        wall_geometry(f, rows, c, form, from + g, g, batch, largest);
+    for (size_t g = 0; g < count; g += DEM_WIDTH)
+        wall_velocity(f, rows, c, from + g, g, batch);
+}
+
+DEM_INLINE void pair_sides(const dem_features f, const dem_rows *rows, const dem_contact_columns *c, size_t from,
+                           size_t count, contact_batch *batch, double *largest)
+{
+    for (size_t g = 0; g < count; g += DEM_WIDTH)
+        pair_first(f, rows, c, from + g, g, batch);
+    for (size_t g = 0; g < count; g += DEM_WIDTH)
+        pair_second(f, rows, c, from + g, g, batch);
+    for (size_t g = 0; g < count; g += DEM_WIDTH)
+        pair_geometry(f, rows, c, from + g, g, batch, largest);
+    for (size_t g = 0; g < count; g += DEM_WIDTH)
+        pair_velocity(f, rows, c, from + g, g, batch);
+    for (size_t g = 0; g < count && needs_mass(f) && f.local_mass; g += DEM_WIDTH)
+        pair_mass(f, rows, c, from + g, g, batch);
 }
 
 DEM_INLINE void contact_batches(const dem_features f, const dem_rows *rows, const dem_contact_job *job, const bool wall,
@@ -364,16 +378,12 @@ DEM_INLINE void contact_batches(const dem_features f, const dem_rows *rows, cons
     double largest = job->tally->overlap_ratio;
     for (size_t from = job->begin; from < job->end; from += BATCH) {
         size_t count = job->end - from < BATCH ? job->end - from : BATCH;
-        for (size_t g = 0; g < count; g += DEM_WIDTH)
-            if (wall)
-                wall_geometry(f, rows, c, form, from + g, g, &batch, &largest);
-            else
-                pair_geometry(f, rows, c, from + g, g, &batch, &largest);
-        for (size_t g = 0; g < count; g += DEM_WIDTH)
-            if (wall)
-                wall_velocity(f, rows, c, from + g, g, &batch);
-            else
-                pair_velocity(f, rows, c, from + g, g, &batch);
+        if (wall)
+            wall_side(f, rows, c, form, from, count, &batch, &largest);
+        else
+            pair_sides(f, rows, c, from, count, &batch, &largest);
+        for (size_t g = 0; g < count && (f.friction || f.bonded); g += DEM_WIDTH)
+            contact_spring(job, from + g, g, &batch);
         // asked outside of the loop: as a part of its condition it costs every kernel one in a hundred instructions
         if (!f.user || f.linear || f.hertz)
             for (size_t g = 0; g < count; g += DEM_WIDTH)
@@ -385,16 +395,9 @@ DEM_INLINE void contact_batches(const dem_features f, const dem_rows *rows, cons
             continue;
         for (size_t block = 0; block < count; block += DEM_BLOCK_LANES) {
             for (size_t g = block; g < block + DEM_BLOCK_LANES; g += DEM_WIDTH)
-                scatter(f, rows, &batch, g, AT_LEAST_A, AT_BRISK_A, c->a + from + g, get3(&batch, AT_FORCE, g),
-                        get3(&batch, AT_A, g), 1);
-            if (wall)
-                continue;
-            for (size_t g = block; g < block + DEM_BLOCK_LANES; g += DEM_WIDTH) {
-                wide3 force = get3(&batch, AT_FORCE, g);
-                force = (wide3){wide_all(0) - force.x, wide_all(0) - force.y, wide_all(0) - force.z};
-                scatter(f, rows, &batch, g, AT_LEAST_B, AT_BRISK_B, c->target + from + g, force, get3(&batch, AT_B, g),
-                        -1);
-            }
+                scatter(f, rows, &batch, g, c->a + from + g, false);
+            for (size_t g = block; g < block + DEM_BLOCK_LANES && !wall; g += DEM_WIDTH)
+                scatter(f, rows, &batch, g, c->target + from + g, true);
         }
     }
     job->tally->overlap_ratio = largest;

@@ -176,7 +176,7 @@ DEM_INLINE wide3 damp_locally(wide3 impulse, wide3 velocity, wide alpha, const b
     wide zero = wide_all(0);
     if (vector) {
         wide size2 = dot3(impulse, impulse), speed2 = dot3(velocity, velocity);
-        wide s = alpha * wide_sqrt(size2) * wide_rsqrt(speed2);
+        wide s = alpha * wide_sqrt(size2) * wide_rsqrt(speed2 + wide_all(1e-300));
         return scale3(velocity, zero - wide_or_zero(wide_less(zero, speed2), s));
     }
     wide j[3] = {impulse.x, impulse.y, impulse.z}, v[3] = {velocity.x, velocity.y, velocity.z};
@@ -241,7 +241,7 @@ DEM_INLINE wide3 hold_spin(wide momentum[8])
 {
     wide3 spin = {momentum[3], momentum[4], momentum[5]};
     wide size2 = dot3(spin, spin), zero = wide_all(0);
-    wide part = wide_min(wide_all(1), momentum[7] * wide_rsqrt(size2));
+    wide part = wide_min(wide_all(1), momentum[7] * wide_rsqrt(size2 + wide_all(1e-300)));
     wide3 impulse = scale3(spin, zero - wide_or_zero(wide_less(zero, size2), part));
     momentum[3] = momentum[3] + impulse.x;
     momentum[4] = momentum[4] + impulse.y;

@@ -64,9 +64,11 @@ DEM_INLINE void measure(const dem_features f, soft_job *job)
     for (size_t from = 0; from < job->size; from += BATCH) {
         size_t count = job->size - from < BATCH ? job->size - from : BATCH;
         for (size_t g = 0; g < count; g += DEM_WIDTH)
-            if (job->form < 0)
+            if (job->form < 0) {
+                pair_first(f, &rows, c, begin + from + g, g, &batch);
+                pair_second(f, &rows, c, begin + from + g, g, &batch);
                 pair_geometry(f, &rows, c, begin + from + g, g, &batch, &largest);
-            else
+            } else
                 wall_geometry(f, &rows, c, (dem_wall_form)job->form, begin + from + g, g, &batch, &largest);
         for (size_t g = 0; g < count; g += DEM_WIDTH)
             put_rows(job, from + g, &batch, g);

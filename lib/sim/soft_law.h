@@ -57,30 +57,19 @@ typedef struct soft_spot {
 
 // what the parts of the law hand on to each other
 typedef struct soft_dashpots {
-    wide mass, stiffness, elastic;
+    contact_mass mass;
+    wide stiffness, damping, elastic;  // along the normal
     wide uneven;                // against what the speeds of the pairs differ by [N s/m]
     wide slide, slide_damping;  // tangential stiffness and damping
 } soft_dashpots;
 
-// the constant of the dashpot [N s/m]
-DEM_INLINE wide dashpot(const dem_features f, const wide *law, wide stiffness, wide mass)
-{
-    wide c = wide_all(0);
-    if (f.rate)
-        c = law[LAW_RATE] * mass;
-    if (f.restitution)
-        c = wide_fma(law[LAW_ZETA], wide_sqrt(stiffness * mass), c);
-    return c;
-}
-
 // the dashpot of a patch against what the speeds of its pairs differ by
-DEM_INLINE wide uneven_damping(const dem_features f, const soft_spot *spot, const soft_dashpots *d, wide inverse,
-                               wide net)
+DEM_INLINE wide uneven_damping(const soft_spot *spot, const soft_dashpots *d, wide net)
 {
-    wide c = dashpot(f, spot->law, d->stiffness, d->mass), zero = wide_all(0), one = wide_all(1);
+    wide c = d->damping, zero = wide_all(0), one = wide_all(1);
     // fades as the tail of the whole is cut, so that there is no jump
     wide fades = wide_or_zero(wide_less(zero, d->elastic), wide_min(one, wide_max(zero, net / d->elastic)));
-    return fades * c / wide_fma(wide_all(0.25 * spot->last_step), c * inverse, one);
+    return fades * c / wide_fma(wide_all(0.25 * spot->last_step), c * d->mass.inverse, one);
 }
 
 // the spring and the dashpot against twisting: k_t and c_t times the square of the radius of gyration, capped by the
@@ -119,8 +108,8 @@ DEM_INLINE wide3 soft_slide(const dem_features f, const soft_spot *spot, const s
     wide_mask on = wide_less(zero, s->depth);
     // the cap is by the force along the mean normal
     normal->force = normal->force * s->along;
-    friction_law t = friction(f, spot->law, normal, spot->reduced, s->depth, s->speed, d->mass, spring, slip, step, on,
-                              wide_less(zero, zero));
+    friction_law t = friction(f, spot->law, normal, spot->reduced, s->depth, s->speed, &d->mass, spring, slip, step,
+                              on, wide_less(zero, zero));
     d->slide = t.stiffness;
     d->slide_damping = t.damping;
     out->elastic_slide = half * t.stiffness * dot3(t.spring, t.spring);
@@ -154,15 +143,16 @@ DEM_INLINE soft_result soft_act(const dem_features f, const soft_spot *spot, con
     wide inverse = f.local_mass ? s->share_a + s->share_b : p->a.inverse_mass + p->b.inverse_mass;
     inverse = wide_select(wide_less(wide_all(1e-300), inverse), inverse, wide_all(1e-300));
     double step = spot->last_step > 0 ? spot->last_step : spot->next_step;
-    soft_dashpots d = {.mass = wide_all(1) / inverse, .uneven = zero, .slide = zero, .slide_damping = zero};
+    soft_dashpots d = {
+        .mass = contact_mass_of(f, inverse), .uneven = zero, .slide = zero, .slide_damping = zero};
     normal_law normal = normal_elastic(f, spot->law, NULL, s->depth, spot->reduced, spot->area);
-    normal_damp(f, spot->law, &normal, inverse, d.mass, s->depth, s->speed, wide_all(spot->last_step),
-                wide_all(1 / step));
+    normal_damp(f, spot->law, &normal, &d.mass, s->depth, s->speed, wide_all(spot->last_step), wide_all(1 / step));
     d.stiffness = normal.stiffness;
+    d.damping = normal.damping;
     d.elastic = wide_or_zero(on, normal.elastic);
     out.net = wide_or_zero(on, normal.force);
     if (f.rate || f.restitution)
-        d.uneven = uneven_damping(f, spot, &d, inverse, out.net);
+        d.uneven = uneven_damping(spot, &d, out.net);
     // of the linear part F = k d the half, of Hertz' F = 2/3 k d two fifths
     wide linear = normal.elastic;
     if (f.hertz)
@@ -192,7 +182,7 @@ DEM_INLINE soft_result soft_act(const dem_features f, const soft_spot *spot, con
     }
     if (f.reaction)
         out.hardness =
-            wide_or_zero(on, wide_fma(dashpot(f, spot->law, d.stiffness, d.mass), wide_all(1 / step), d.stiffness));
+            wide_or_zero(on, wide_fma(d.damping, wide_all(1 / step), d.stiffness));
     return out;
 }
 

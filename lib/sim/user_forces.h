@@ -16,7 +16,7 @@ typedef struct user_batch {
     double moment[3][BATCH] __attribute__((aligned(64)));  // on a [N m]
     double stored[BATCH], slid[BATCH], push[BATCH] __attribute__((aligned(64)));
     double stiffness[BATCH], slide_stiffness[BATCH], strain[BATCH], turn_strain[BATCH], on[BATCH];
-    double hardness[BATCH];  // see contact_hardness
+    double hardness[BATCH];  // spring and dashpot over a step, as contact_law has it
 } user_batch;
 
 DEM_INLINE wide3 user_vector(double (*rows)[BATCH], size_t g)

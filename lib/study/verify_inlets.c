@@ -41,10 +41,16 @@ static void flow(dem_trial *t)
     double overlap = 0;
     for (int i = 0; i < 100 && dem_trial_step(t, 100); i++)
         overlap = fmax(overlap, dem_trial_figures(t)->largest_overlap_ratio);
-    size_t count = 0;
-    const dem_inlet_view *came = t->status == DEM_OK ? dem_world_inlets(t->world, &count) : NULL;
-    dem_expect(t, count > 0 ? came[0].mass : NAN, mass * time, heaviest, "kg", "mass through the box");
-    dem_expect(t, count > 1 ? (double)came[1].bodies : NAN, bodies * time, 1, "", "bodies through the generator");
+    // those that are there, not what the inlets say of themselves
+    dem_body_view there = t->status == DEM_OK ? dem_world_bodies(t->world) : (dem_body_view){0};
+    double sum = 0, generated = 0;
+    for (size_t i = 0; i < there.count; i++) {
+        bool far = there.position[i].x > 0.9;
+        sum += far ? 0 : there.mass[i];
+        generated += far;
+    }
+    dem_expect(t, sum, mass * time, heaviest, "kg", "mass through the box");
+    dem_expect(t, generated, bodies * time, 1, "", "bodies through the generator");
     dem_expect_most(t, overlap, 0, "", "largest overlap");
 }
 

@@ -19,6 +19,16 @@ DEM_INLINE wide3 along3(wide3 a, wide s, wide3 b)
 {
     return (wide3){wide_fma(s, b.x, a.x), wide_fma(s, b.y, a.y), wide_fma(s, b.z, a.z)};
 }
+/// a - s b
+DEM_INLINE wide3 against3(wide3 a, wide s, wide3 b)
+{
+    return (wide3){wide_fnma(s, b.x, a.x), wide_fnma(s, b.y, a.y), wide_fnma(s, b.z, a.z)};
+}
+/// |a|^2 + 1e-300, which has a root that can be divided by.
+DEM_INLINE wide square3(wide3 a)
+{
+    return wide_fma(a.z, a.z, wide_fma(a.y, a.y, wide_fma(a.x, a.x, wide_all(1e-300))));
+}
 DEM_INLINE wide3 scale3(wide3 a, wide s)
 {
     return (wide3){a.x * s, a.y * s, a.z * s};
@@ -40,10 +50,10 @@ DEM_INLINE wide3 or_zero3(wide_mask m, wide3 a)
 DEM_INLINE wide3 spring_turn(wide3 spring, wide3 n, wide turn)
 {
     wide before = dot3(spring, spring);
-    spring = along3(spring, wide_all(0) - dot3(spring, n), n);
+    spring = against3(spring, dot3(spring, n), n);
     wide after = dot3(spring, spring);
     // |before| / |after|; nothing is left of a spring that stood along n
-    wide stretch = before * wide_rsqrt(before * after);
+    wide stretch = before * wide_rsqrt(wide_fma(before, after, wide_all(1e-300)));
     spring = scale3(spring, wide_or_zero(wide_less(wide_all(0), after), stretch));
     return along3(spring, turn, cross3(n, spring));
 }
@@ -68,12 +78,12 @@ DEM_INLINE wide friction_coefficient(const dem_features f, const wide *law, wide
 /// `spring` has been turned; `slip` is the tangential velocity of the second surface over the first [m/s], `vn` that
 /// of separation; `step` the time since the last one [s]. Where the surfaces are `bonded`, there is no cap.
 DEM_INLINE friction_law friction(const dem_features f, const wide *law, const normal_law *n, wide reduced, wide overlap,
-                                 wide vn, wide mass, wide3 spring, wide3 slip, wide step, wide_mask on,
-                                 wide_mask bonded)
+                                 wide vn, const contact_mass *mass, wide3 spring, wide3 slip, wide step,
+                                 wide_mask on, wide_mask bonded)
 {
     wide zero = wide_all(0);
     wide stiffness = law[LAW_SLIDE_STIFFNESS] + law[LAW_SLIDE_RATIO] * n->stiffness, old_stiffness = stiffness;
-    wide3 start = spring;
+    const wide3 start = spring;
     if (f.mindlin) {
         wide old_radius = radius_before(f, n, reduced, overlap, overlap + vn * step);
         wide kept = old_radius / wide_max(n->radius, wide_all(1e-300));
@@ -81,43 +91,53 @@ DEM_INLINE friction_law friction(const dem_features f, const wide *law, const no
         old_stiffness = old_stiffness + law[LAW_SLIDE_HERTZ] * old_radius;
         spring = scale3(spring, wide_max(law[LAW_KEEP_LEAST], wide_min(law[LAW_KEEP_MOST], kept)));
     }
-    spring = along3(spring, step, slip);
+    const wide3 stretched = along3(spring, step, slip);
     wide damping = zero;
     if (f.slide_damping) {
         if (f.rate)
-            damping = law[LAW_SLIDE_RATE] * mass;
+            damping = law[LAW_SLIDE_RATE] * mass->mass;
         if (f.restitution)
-            damping = damping + law[LAW_SLIDE_ZETA] * wide_sqrt(stiffness * mass);
+            damping = wide_fma(law[LAW_SLIDE_ZETA] * wide_sqrt(stiffness), mass->root, damping);
     }
-    wide3 force = scale3(spring, stiffness);
+    // of the spring as it will be, which need not be waited for
+    wide more = stiffness * step;
     if (f.slide_damping)
-        force = along3(force, damping, slip);
+        more = more + damping;
+    wide3 force = along3(scale3(spring, stiffness), more, slip);
 
-    wide size2 = dot3(force, force), cap = friction_coefficient(f, law, slip) * normal_grip(f, n);
+    wide size2 = square3(force), cap = friction_coefficient(f, law, slip) * normal_grip(f, n);
     if (f.bonded)
         cap = wide_select(bonded, wide_all(1e150), cap);
-    wide_mask slides = wide_less(cap * cap, size2);
+    // as much more as the size has, so that nothing does not slide
+    wide cap2 = wide_fma(cap, cap, wide_all(1e-300));
+    wide_mask slides = wide_less(cap2, size2);
     wide part = cap * wide_rsqrt(size2), per_stiffness = wide_all(1) / stiffness;
     wide3 capped = scale3(force, part), left = capped;
     if (f.slide_damping) {
         // What the spring keeps. With a restitution all it has: a dashpot behind a slider sees no slip. With a rate
         // what the dashpot leaves of the cap (as LAMMPS does). Beyond the cap, the capped force.
-        wide3 own = scale3(spring, stiffness), rest = along3(capped, zero - damping, slip);
+        wide3 own = scale3(stretched, stiffness), rest = against3(capped, damping, slip);
         left = !f.rate ? own : !f.restitution ? rest : select3(wide_less(zero, law[LAW_SLIDE_RATE]), rest, own);
-        left = select3(wide_less(cap * cap, dot3(left, left)), capped, left);
+        left = select3(wide_less(cap2, dot3(left, left)), capped, left);
     }
     force = select3(slides, capped, force);
-    spring = select3(slides, scale3(left, per_stiffness), spring);
+    spring = select3(slides, scale3(left, per_stiffness), stretched);
     wide3 none = {zero, zero, zero};
     friction_law result = {or_zero3(on, force), or_zero3(on, spring), none, zero, stiffness, old_stiffness, damping};
     if (f.ledger) {
         // work of the mean force over the slip, less what the spring holds more than before
-        wide3 both = along3(scale3(result.spring, stiffness), old_stiffness, start);
-        wide held = stiffness * dot3(result.spring, result.spring) - old_stiffness * dot3(start, start);
-        result.lost = wide_all(0.5) * (step * dot3(both, slip) - held);
+        if (f.mindlin) {
+            wide3 both = along3(scale3(result.spring, stiffness), old_stiffness, start);
+            wide held = stiffness * dot3(result.spring, result.spring) - old_stiffness * dot3(start, start);
+            result.lost = wide_all(0.5) * (step * dot3(both, slip) - held);
+        } else {
+            // the same for one stiffness: nothing where the spring has kept all
+            wide3 both = along3(result.spring, wide_all(1), start), gone = against3(stretched, wide_all(1), result.spring);
+            result.lost = wide_all(0.5) * stiffness * dot3(both, gone);
+        }
         // while sliding, the dashpot has only what the cap leaves to it
         if (f.slide_damping)
-            result.dash = or_zero3(on, along3(force, zero - stiffness, spring));
+            result.dash = or_zero3(on, against3(force, stiffness, spring));
     }
     return result;
 }

@@ -10,11 +10,29 @@ typedef struct normal_law {
     wide elastic;    ///< force of the spring [N]
     wide force;      ///< with the dashpot [N]
     wide stiffness;  ///< tangent of the spring [N/m]
+    wide damping;    ///< of the dashpot [N s/m]
     wide radius;     ///< sqrt(R* overlap), of the contact [m] (Hertz only)
     wide spread;     ///< d radius / d overlap [-] (JKR only)
     wide grip;       ///< force by which friction is measured: what JKR pulls counts twice at most [N] (JKR only)
     wide energy;     ///< of the spring [J] (JKR only)
 } normal_law;
+
+/// The mass that a contact sees.
+typedef struct contact_mass {
+    wide inverse, mass, root;  ///< 1 / m [1/kg], m [kg], sqrt(m) [sqrt(kg)] (restitution only)
+} contact_mass;
+
+DEM_INLINE contact_mass contact_mass_of(const dem_features f, wide inverse)
+{
+    contact_mass m = {inverse, wide_all(0), wide_all(0)};
+    if (f.restitution) {
+        m.root = wide_rsqrt(inverse + wide_all(1e-300));
+        m.mass = m.root * m.root;
+    }
+    if (f.rate)
+        m.mass = wide_all(1) / inverse;
+    return m;
+}
 
 /// R* = R_i R_j / (R_i + R_j)
 DEM_INLINE wide reduced_radius(wide a, wide b)
@@ -27,7 +45,7 @@ DEM_INLINE normal_law normal_elastic(const dem_features f, const wide *law, cons
                                      wide reduced, wide area_length)
 {
     wide zero = wide_all(0);
-    normal_law n = {zero, zero, zero, zero, zero, zero, zero};
+    normal_law n = {zero, zero, zero, zero, zero, zero, zero, zero};
     if (f.linear) {
         n.stiffness = law[LAW_STIFFNESS];
         if (f.young)
@@ -69,28 +87,33 @@ DEM_INLINE wide radius_before(const dem_features f, const normal_law *n, wide re
     return wide_sqrt(reduced * wide_max(before, wide_all(0)));
 }
 
-/// Dashpot on the velocity `vn` of separation half a step ago [m/s], with the inverse of the effective mass [1/kg].
+/// Dashpot on the velocity `vn` of separation half a step ago [m/s].
 ///
 /// Of second order, so that few steps give the asked restitution. The old velocity makes an oscillator of m - c h / 2
 /// of one of m, whose damping ratio is larger by 1 + c h / 4 m: c is smaller by that. And the first force counts for a
 /// whole step, wherever in the step the contact has begun: with s = overlap / (h |vn|), the steps since then, it is
 /// weighed by 3/2 s up to s = 1 and then by 2 - s / 2 down to 1, which has no jumps and sums up to the time that has
 /// passed. Likewise at the end of a contact that may pull. `per_step`: 1 / h.
-DEM_INLINE void normal_damp(const dem_features f, const wide *law, normal_law *n, wide inverse_mass, wide mass,
-                            wide overlap, wide vn, wide step, wide per_step)
+DEM_INLINE void normal_damp(const dem_features f, const wide *law, normal_law *n, const contact_mass *m, wide overlap,
+                            wide vn, wide step, wide per_step)
 {
-    wide c = wide_all(0);
-    if (f.rate)
-        c = law[LAW_RATE] * mass;
-    if (f.restitution)
-        c = wide_fma(law[LAW_ZETA], wide_sqrt(n->stiffness * mass), c);
+    // by a rate, c / m is a number of the law; in a scene that has both, each contact has one of them
+    wide c = wide_all(0), quarter = wide_all(0.25) * step;
+    if (f.rate) {
+        n->damping = law[LAW_RATE] * m->mass;
+        c = law[LAW_RATE] / wide_fma(quarter, law[LAW_RATE], wide_all(1)) * m->mass;
+    }
+    if (f.restitution) {
+        wide own = law[LAW_ZETA] * wide_sqrt(n->stiffness) * m->root;
+        n->damping = n->damping + own;
+        c = c + own / wide_fma(quarter, own * m->inverse, wide_all(1));
+    }
     if (f.rate || f.restitution) {
         wide speed = wide_abs(vn), gone = overlap * per_step;
         wide acts = wide_max(speed, wide_fma(wide_all(-0.5), gone, speed + speed));
         acts = wide_min(wide_all(1.5) * gone, acts);
         wide leaves = f.cut ? wide_select(wide_less(law[LAW_FLOOR], wide_all(0)), acts, vn) : acts;
         acts = wide_select(wide_less(vn, wide_all(0)), wide_all(0) - acts, leaves);
-        c = c / wide_fma(wide_all(0.25) * step, c * inverse_mass, wide_all(1));
         n->force = wide_fnma(c, acts, n->force);
     }
     if (f.cut)

@@ -55,7 +55,7 @@ DEM_INLINE void roll_spring(const dem_features f, const wide *law, const normal_
     wide3 moment = scale3(angle, stiffness);
     wide size2 = dot3(moment, moment), cap = law[LAW_ROLL_CAP] * (s->reduced * normal_grip(f, n));
     wide_mask slides = wide_less(cap * cap, size2);
-    wide part = wide_select(slides, cap * wide_rsqrt(size2), wide_all(1));
+    wide part = wide_select(slides, cap * wide_rsqrt(size2 + wide_all(1e-300)), wide_all(1));
     // a contact that ends lets go of what its springs hold
     moment = or_zero3(on, scale3(moment, part));
     t->roll = or_zero3(on, scale3(angle, part));
@@ -97,7 +97,7 @@ DEM_INLINE turning_law turning(const dem_features f, const wide *law, const norm
                                wide step, wide_mask on)
 {
     wide zero = wide_all(0), twist = dot3(s->spin, s->n);
-    wide3 none = {zero, zero, zero}, roll = along3(s->spin, zero - twist, s->n);
+    wide3 none = {zero, zero, zero}, roll = against3(s->spin, twist, s->n);
     turning_law t = {
         .moment = none, .roll = none, .twist = zero, .drag = none, .lost = zero, .held = zero, .strain = zero};
     if (f.rolling)
@@ -106,8 +106,8 @@ DEM_INLINE turning_law turning(const dem_features f, const wide *law, const norm
         twist_spring(f, law, n, s, twist, step, on, &t);
     wide hold = s->reduced * normal_grip(f, n);
     if (f.roll_constant) {
-        wide size2 = dot3(roll, roll), moment = law[LAW_ROLL_CONSTANT] * hold * wide_rsqrt(size2);
-        t.drag = along3(t.drag, wide_or_zero(wide_less(zero, size2), moment), roll);
+        wide moment = law[LAW_ROLL_CONSTANT] * hold * wide_rsqrt(square3(roll));
+        t.drag = along3(t.drag, wide_or_zero(wide_less(zero, dot3(roll, roll)), moment), roll);
     }
     if (f.twist_constant)
         t.drag = along3(t.drag, law[LAW_TWIST_CONSTANT] * hold * sign_of(twist), s->n);
