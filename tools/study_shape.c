@@ -102,7 +102,10 @@ static int run_cells(const cli_tool *tool, cli_session *session, const dem_ctx *
     dem_status status = dem_shape_run(ctx, s, results, &error);
     int exit_status = status == DEM_OK ? 0 : cli_session_error(session, &error);
     shape_told told = {.study = s, .results = results, .grains = grains, .series = (shape_series)a->family};
-    told.title = a->request.mesh ? a->request.mesh : "family";
+    static const char *const families[] = {"", "ellipsoids of different aspect ratio",
+                                           "polyhedra of different roundness", "polyhedra of different angularity",
+                                           "clusters of one to four spheres"};
+    told.title = a->request.mesh ? a->request.mesh : families[a->family];
     for (size_t i = 0; i < cells; i++) {
         told.missing += results[i].found == NULL;
         told.failed += results[i].found == NULL && results[i].status != DEM_INTERRUPTED;

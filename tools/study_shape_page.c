@@ -145,11 +145,38 @@ static size_t enough_of_all(const sheet *s)
     return s->count ? most : s->variants;
 }
 
+// whether grains that are not convex are stronger than the sphere
+static void say_clusters(dem_buffer *out, const sheet *s)
+{
+    size_t more = 0, less = 0;
+    for (size_t i = 0; i < s->count; i++) {
+        const shown *item = &s->items[i];
+        if (strstr(item->figure->name, "angle") || strcmp(item->figure->name, "repose") == 0)
+            for (size_t v = 1; v < s->variants; v++) {
+                double by = item->mean[v] - item->mean[0], error = hypot(item->error[v], item->error[0]);
+                more += by > error;
+                less += by < -error;
+            }
+    }
+    if (more && !less)
+        dem_buffer_print(out,
+                         "Grains that are not convex are stronger than spheres: %zu angles are larger by more "
+                         "than their error, none is smaller",
+                         more);
+    else
+        dem_buffer_print(out,
+                         "Of the angles of grains that are not convex %zu are larger than those of spheres by more "
+                         "than their error, %zu are smaller",
+                         more, less);
+}
+
 static void say_all(dem_buffer *out, const sheet *s)
 {
     size_t all = enough_of_all(s), last = s->variants - 1;
-    if (!s->told->grains->spheres)
-        dem_buffer_print(out, "%zu grains", s->variants);
+    if (s->told->series == SHAPE_CLUSTERS)
+        say_clusters(out, s);
+    else if (!s->told->grains->spheres)
+        dem_buffer_print(out, "%zu grains of different %s", s->variants, s->told->grains->axis);
     else if (all < last)
         dem_buffer_print(out, "More than %.0f spheres do not pay: no figure can be told from that of %.0f spheres",
                          s->x[all], s->x[last]);
@@ -177,8 +204,10 @@ static void put_table(dem_buffer *out, const sheet *s)
         dem_page_number(out, s->x[v], 4);
         for (size_t i = 0; i < s->count; i++) {
             char text[2][32], cell[80];
-            snprintf(cell, sizeof cell, "%s ± %s", dem_format_double(text[0], 32, s->items[i].mean[v], 4),
-                     dem_format_double(text[1], 32, s->items[i].error[v], 2));
+            dem_format_double(text[0], 32, s->items[i].mean[v], 4);
+            dem_format_double(text[1], 32, s->items[i].error[v], 2);
+            // of one seed there is no error
+            snprintf(cell, sizeof cell, s->items[i].error[v] > 0 ? "%s ± %s" : "%s", text[0], text[1]);
             dem_page_cell(out, isnan(s->items[i].mean[v]) ? "-" : cell);
         }
         dem_page_row_end(out);

@@ -385,18 +385,41 @@ static void contact_pass(dem_world *w, size_t begin, size_t end, double kick)
     }
 }
 
-static void wall_pass(dem_world *w, size_t begin, size_t end, double kick)
+// contacts with walls of one form from one block of 8 to another
+static void wall_blocks(dem_world *w, size_t form, size_t segment, size_t begin, size_t end, double kick)
 {
     dem_rows rows = world_rows(w);
+    if (begin < end)
+        w->wall_instance->walls[form](w->features, &rows,
+                                      &(dem_contact_job){w->wall_contacts[form].columns, begin, end, w->last_step, kick,
+                                                         w->next_step,
+                                                         &w->tallies[(1 + form) * w->segment_count + segment], NULL});
+}
+
+// with meshes many blocks have no contact now
+static void mesh_blocks(dem_world *w, size_t segment, const dem_segment *s, double kick)
+{
+    const dem_contact_columns *c = &w->wall_contacts[DEM_FORM_MESH].columns;
+    size_t begin = s->begin;
+    for (size_t block = s->begin; block < s->end; block += DEM_BLOCK_LANES) {
+        if (!dem_mesh_block_idle(c, block))
+            continue;
+        wall_blocks(w, DEM_FORM_MESH, segment, begin, block, kick);
+        begin = block + DEM_BLOCK_LANES;
+    }
+    wall_blocks(w, DEM_FORM_MESH, segment, begin, s->end, kick);
+}
+
+static void wall_pass(dem_world *w, size_t begin, size_t end, double kick)
+{
     for (size_t form = 0; form < DEM_WALL_FORMS; form++) {
         const dem_contacts *contacts = &w->wall_contacts[form];
         for (size_t i = begin; contacts->segments && i < end; i++) {
             const dem_segment *s = &contacts->segments[i];
-            if (s->begin < s->end)
-                w->wall_instance->walls[form](w->features, &rows,
-                                              &(dem_contact_job){contacts->columns, s->begin, s->end, w->last_step,
-                                                                 kick, w->next_step,
-                                                                 &w->tallies[(1 + form) * w->segment_count + i], NULL});
+            if (form == DEM_FORM_MESH)
+                mesh_blocks(w, i, s, kick);
+            else
+                wall_blocks(w, form, i, s->begin, s->end, kick);
         }
     }
 }
