@@ -196,6 +196,57 @@ static void meshes_give_the_same_bits_for_threads_and_restarts(void **state)
     model_free(m);
 }
 
+// What is kept about which triangles a ball may touch must not show: a world that forgets it before every step finds the
+// same contacts to the bit, on a mesh at rest, on one that turns into the bodies, faster and slower, and in a funnel.
+static void what_is_kept_of_the_triangles_near_a_ball_changes_nothing(void **state)
+{
+    (void)state;
+    for (int way = 0; way < 3; way++) {
+        model *m = model_new();
+        m->scene.gravity = v3(0, 0, -9.81);
+        m->laws[0].friction = DEM_FRICTION_LINEAR;
+        m->laws[0].friction_coefficient = 0.4;
+        m->laws[0].damping = DEM_DAMPING_RESTITUTION;
+        m->laws[0].restitution = 0.5;
+        model_cloud(m, 6, 0.02, 1);
+        model_lattice(m, 80, 0.03, 1, 1);
+        for (size_t i = 0; i < 80; i++)
+            m->bodies[i].velocity = v3(0.1, 0, -1);
+        dem_wall_def *wall = model_plane(m, v3(0.07, 0.07, -0.01), v3(0, 0, 1));
+        if (way < 2) {
+            wall->kind = DEM_WALL_MESH;
+            wall->mesh = plate(60, 1, 0.2);
+        } else {
+            wall->kind = DEM_WALL_CONE;
+            wall->radius = 0.01;
+            wall->end_radius = 0.3;
+            wall->length = 0.3;
+        }
+        static const dem_oscillation shake = {.shift = {0, 0.002, 0.004}, .frequency = 30};
+        if (way == 1) {
+            wall->oscillations = &shake;
+            wall->oscillation_count = 1;
+        }
+        dem_world *kept = model_world(m, 1), *forgetful = model_world(m, 1);
+        size_t touched = 0;
+        for (int step = 0; step < 3000; step++) {
+            for (size_t i = 0; i < forgetful->segment_count; i++) {
+                dem_mesh_touches *t = &forgetful->mesh_touches[i];
+                check(dem_mesh_touches_forget(t));
+                for (size_t k = 0; k < t->count; k++)
+                    touched += t->items[k].last_count;
+            }
+            run_steps(forgetful, 1);
+        }
+        run_steps(kept, 3000);
+        check(touched > 1000);
+        assert_int_equal(dem_world_hash(kept), dem_world_hash(forgetful));
+        dem_world_destroy(kept);
+        dem_world_destroy(forgetful);
+        model_free(m);
+    }
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -204,6 +255,7 @@ int main(void)
         cmocka_unit_test(a_turning_plate_turns_as_a_plane_does),
         cmocka_unit_test(a_sphere_lies_in_a_groove_on_two_contacts),
         cmocka_unit_test(meshes_give_the_same_bits_for_threads_and_restarts),
+        cmocka_unit_test(what_is_kept_of_the_triangles_near_a_ball_changes_nothing),
     };
 #if DEM_EMBREE
     return cmocka_run_group_tests(tests, NULL, NULL);

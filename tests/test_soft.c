@@ -390,6 +390,30 @@ static void a_cube_rests_flat_and_does_not_creep(void **state)
     model_free(m);
 }
 
+// lanes without a patch stand for a mass without end, whose dashpot must stay a number
+static void contacts_of_any_stiffness_keep_a_ledger(void **state)
+{
+    (void)state;
+    static const double stiff[] = {1, 1e9, 1e20};
+    for (int i = 0; i < 3; i++) {
+        model *m = soft_model();
+        m->scene.output.energy = true;
+        m->scene.time.step = 0;
+        m->laws[0].stiffness = stiff[i];
+        damp(&m->laws[0], 0.5, 0.5);
+        uint32_t shape = model_cloud(m, 8, 1, 2);
+        model_plane(m, v3(0, 0, 0), v3(0, 0, 1));
+        model_body(m, shape, v3(0, 0, 0.3))->velocity.z = -1e-3;
+        model_body(m, shape, v3(0.1, 0, 0.8))->velocity.z = -2e-3;
+        dem_world *w = model_world(m, 1);
+        run_steps(w, 200);
+        const dem_energy *e = &measured(w)->energy;
+        check(isfinite(e->viscous) && isfinite(e->error));
+        dem_world_destroy(w);
+        model_free(m);
+    }
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -401,6 +425,7 @@ int main(void)
         cmocka_unit_test(copies_of_spheres_change_nothing),
         cmocka_unit_test(a_cube_keeps_its_rocking_stiffness),
         cmocka_unit_test(a_cube_rests_flat_and_does_not_creep),
+        cmocka_unit_test(contacts_of_any_stiffness_keep_a_ledger),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

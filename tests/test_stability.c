@@ -30,10 +30,34 @@ static void a_limit_that_is_not_found_is_no_number(void **state)
     dem_trial_release(&t);
 }
 
+// a table of bodies with a line twice; but what stands around another one is no such case
+static void two_bodies_in_one_place_are_refused(void **state)
+{
+    (void)state;
+    for (int other = 0; other < 3; other++) {
+        model *m = calloc(1, sizeof *m);
+        model_begin(m);
+        uint32_t first = other == 1 ? model_dumbbell(m, 0.01, 0.01) : model_sphere(m, 0.01);
+        uint32_t second = other == 2 ? model_dumbbell(m, 0.01, 0.05) : first;
+        model_body(m, first, v3(1, 2, 3));
+        model_body(m, second, v3(1, 2, 3));
+        dem_world *w;
+        dem_error error;
+        dem_status status = dem_world_create(NULL, &m->scene, &w, &error);
+        check(status == (other == 2 ? DEM_OK : DEM_BAD_INPUT));
+        if (status != DEM_OK)
+            check(strstr(error.text, "bodies 0 and 1 stand in one place (1, 2, 3) m"));
+        dem_world_destroy(w);
+        model_end(m);
+        free(m);
+    }
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(names_are_words_and_each_is_there_once),
+        cmocka_unit_test(two_bodies_in_one_place_are_refused),
         cmocka_unit_test(a_limit_that_is_not_found_is_no_number),
     };
     return run_with_cases(tests, sizeof tests / sizeof *tests, dem_stability_case, true);

@@ -3,8 +3,10 @@
 
 #include "cli.h"
 #include "study_convergence.h"
+#include "study_dimers.h"
 #include "study_lab.h"
 #include "study_mohr.h"
+#include "study_shape.h"
 #include "study_suite.h"
 
 // what stands before the options and has options of its own
@@ -19,6 +21,8 @@ static const subcommand subcommands[] = {
     {"mohr-coulomb", study_mohr_coulomb},
     {"scene", study_scene},
     {"test", study_test},
+    {"shape", study_shape},
+    {"dimers", study_dimers},
 };
 
 static int no_study(const cli_tool *tool, const char *name)
@@ -40,8 +44,8 @@ int main(int argc, char **argv)
         "Studies of what can be relied on. Each is a word with options of its own: verify compares what the engine "
         "computes with what is known; stability finds where runs become unstable and tries extreme scenes; convergence "
         "measures what the step and the schemes of integration do to a scene and what they cost; "
-        "mohr-coulomb fits friction angle and cohesion to the strengths of tests; scene and "
-        "test write and do measured tests of granular matter.";
+        "mohr-coulomb fits friction angle and cohesion to the strengths of tests; scene and test write and do measured "
+        "tests of granular matter; shape compares grains by them; dimers packs dimers at random.";
     static const char epilogue[] =
         "Examples:\n"
         "  dem-study verify                 cases with a known answer\n"
@@ -49,11 +53,13 @@ int main(int argc, char **argv)
         "  dem-study convergence sand.json  error against the step and run time\n"
         "  dem-study mohr-coulomb tests.csv friction angle and cohesion\n"
         "  dem-study test heap              angle of repose of a grain\n"
+        "  dem-study shape grain.obj        from how many spheres on more do not pay\n"
+        "  dem-study dimers                 random packing against aspect ratio\n"
         "  dem-study verify --help          how to choose them, and where the table can go\n"
         "Exit status: 0 done, 1 a study found a failure, 2 wrong usage, 3 bad input, 4 cannot write, 130 interrupted.";
     cli_common common = CLI_COMMON_DEFAULTS;
     const cli_option options[] = {CLI_COMMON_OPTIONS(common)};
-    const cli_tool tool = {"dem-study", "verify|stability|convergence|mohr-coulomb|scene|test [options]", about,
+    const cli_tool tool = {"dem-study", "STUDY [options]", about,
                            options,     sizeof options / sizeof *options, epilogue};
     cli_texts words = {0};
     int status;

@@ -125,6 +125,14 @@ static inline dem_closest triangle_closest(const dem_triangle *t, dem_vec3 p)
     return triangle_spot_(t, p, false);
 }
 
+/// Is the plane beyond the radius, and so the triangle? With room to spare: where rounding has turned the normal of a
+/// sliver, it is about its length, and then the plane is off by no more than the sliver is wide.
+static inline bool triangle_is_beyond(const dem_triangle *t, dem_vec3 p, double radius)
+{
+    double height = v3_dot(t->normal, v3_sub(t->a, p));
+    return height * height > 1.01 * (radius * radius);
+}
+
 /// The same bits without branches, for loops that are to become vector code.
 TRIANGLE_INLINE dem_closest triangle_closest_lane(const dem_triangle *t, dem_vec3 p)
 {

@@ -207,7 +207,7 @@ void dem_contact_put(const dem_contact_columns *c, size_t at, const dem_contact_
         c->weight[at] = 1;
     // a mesh contact that has not been measured yet does not touch
     for (int k = 0; c->geometry[0] && k < 7; k++)
-        c->geometry[k][at] = k == 3 ? -1 : 0;
+        c->geometry[k][at] = k == 3 ? DEM_MESH_NO_OVERLAP : 0;
 }
 
 dem_contact_item dem_contact_idle(const dem_world *w, int form)

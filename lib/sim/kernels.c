@@ -46,6 +46,11 @@
     {                                                                                                                  \
         (void)given;                                                                                                   \
         contact_batches(f, rows, job, true, DEM_FORM_PLANE, false);                                                    \
+    }                                                                                                                  \
+    static void name##_meshes(dem_features given, const dem_rows *rows, const dem_contact_job *job)                    \
+    {                                                                                                                  \
+        (void)given;                                                                                                   \
+        contact_batches(f, rows, job, true, DEM_FORM_MESH, false);                                                     \
     }
 #define INSTANCE(name, ...) KERNELS_OF(name, ((dem_features){__VA_ARGS__}))
 INSTANCES(INSTANCE)
@@ -70,7 +75,7 @@ ANY_WALLS(planes, DEM_FORM_PLANE)
 ANY_WALLS(cylinders, DEM_FORM_CYLINDER)
 ANY_WALLS(meshes, DEM_FORM_MESH)
 
-#define ENTRY(name, ...) {#name, {__VA_ARGS__}, false, name##_pairs, {name##_planes, any_cylinders, any_meshes}},
+#define ENTRY(name, ...) {#name, {__VA_ARGS__}, false, name##_pairs, {name##_planes, any_cylinders, name##_meshes}},
 static const dem_contact_instance instances[] = {
     INSTANCES(ENTRY){"any", {0}, true, any_pairs, {any_planes, any_cylinders, any_meshes}},
 };

@@ -289,14 +289,6 @@ static dem_mesh_contact contact_at(const search *s, const candidate *c)
     return (dem_mesh_contact){c->triangle, (dem_triangle_part)c->spot.part, point, offset, normal, distance};
 }
 
-// Is the plane beyond the radius? With room to spare: where rounding has turned the normal of a sliver, it is about its
-// length, and then the plane is off by no more than the sliver is wide.
-static bool is_far(const dem_triangle *t, dem_vec3 centre, double radius2)
-{
-    double height = v3_dot(t->normal, v3_sub(t->a, centre));
-    return height * height > 1.01 * radius2;
-}
-
 // keeps the candidates within the ball at hand if they are few enough
 static void keep(search *s, candidate *room)
 {
@@ -305,13 +297,25 @@ static void keep(search *s, candidate *room)
     for (size_t k = 0; k < s->count; k++) {
         if (count == KEPT)
             return;
-        if (is_far(&s->wall->triangles[s->ids[k]], s->centre, end))
+        if (triangle_is_beyond(&s->wall->triangles[s->ids[k]], s->centre, s->radius))
             continue;
         make_candidate(s, k, &room[count]);
         count += room[count].spot.distance2 < end;
     }
     s->kept = room;
     s->count = count;
+}
+
+// one triangle alone is hidden by nothing
+static int touch_one(const search *s, dem_mesh_contact *contact)
+{
+    candidate c;
+    make_candidate(s, 0, &c);
+    if (!(c.spot.distance2 < s->radius * s->radius) ||
+        triangle_is_beyond(&s->wall->triangles[c.triangle], s->centre, s->radius))
+        return 0;
+    *contact = contact_at(s, &c);
+    return 1;
 }
 
 int dem_mesh_wall_sift(const dem_mesh_wall *wall, const uint32_t *ids, const dem_closest *spots, size_t count,
@@ -321,6 +325,8 @@ int dem_mesh_wall_sift(const dem_mesh_wall *wall, const uint32_t *ids, const dem
     search s = {wall, centre, radius, ids, spots, count, NULL};
     int found = 0;
     DEM_ASSERT(most <= DEM_MESH_CONTACTS);
+    if (count == 1 && most > 0)
+        return touch_one(&s, contacts);
     keep(&s, room);
     while (found < most && next_candidate(&s, contacts, found, &at)) {
         candidate c = at;
@@ -336,6 +342,21 @@ int dem_mesh_wall_contacts(const dem_mesh_wall *wall, const uint32_t *ids, size_
     return dem_mesh_wall_sift(wall, ids, NULL, count, centre, radius, contacts, most);
 }
 
+double dem_mesh_wall_close(const dem_mesh_wall *wall, const uint32_t *ids, size_t count, dem_vec3 centre, double reach,
+                           uint32_t *close, uint32_t *close_count)
+{
+    double next2 = INFINITY;
+    *close_count = 0;
+    for (size_t k = 0; k < count; k++) {
+        double distance2 = triangle_closest(&wall->triangles[ids[k]], centre).distance2;
+        if (distance2 < reach * reach)
+            close[(*close_count)++] = ids[k];
+        else
+            next2 = distance2 < next2 ? distance2 : next2;
+    }
+    return sqrt(next2);
+}
+
 // ---- history
 
 void dem_mesh_contacts_follow(const dem_mesh_contact *last, int last_count, const dem_mesh_contact *contacts, int count,
@@ -344,6 +365,12 @@ void dem_mesh_contacts_follow(const dem_mesh_contact *last, int last_count, cons
     const double aligned = 0.96592582628906829;  // cos 15 degrees
     bool used[DEM_MESH_CONTACTS] = {false};
     DEM_ASSERT(last_count <= DEM_MESH_CONTACTS && count <= DEM_MESH_CONTACTS);
+    if (count == 1 && last_count == 1) {
+        // most are alone
+        bool near = v3_norm2(v3_sub(contacts->point, last->point)) <= reach * reach;
+        from[0] = near && v3_dot(contacts->normal, last->normal) >= aligned ? 0 : -1;
+        return;
+    }
     for (int k = 0; k < count; k++)
         from[k] = -1;
     for (;;) {

@@ -69,6 +69,11 @@ int dem_mesh_wall_contacts(const dem_mesh_wall *wall, const uint32_t *ids, size_
 int dem_mesh_wall_sift(const dem_mesh_wall *wall, const uint32_t *ids, const dem_closest *spots, size_t count,
                        dem_vec3 centre, double radius, dem_mesh_contact *contacts, int most);
 
+/// Of the triangles `ids` those with a point nearer than `reach` to the centre, to `close`; returns the distance of the
+/// nearest of the others, INFINITY if there is none.
+double dem_mesh_wall_close(const dem_mesh_wall *wall, const uint32_t *ids, size_t count, dem_vec3 centre, double reach,
+                           uint32_t *close, uint32_t *close_count);
+
 /// Which contact of the last step of the same ball and wall each contact goes on with: from[k] is an index into `last`,
 /// or -1 for a new one. One goes on with a contact whose point, in the wall's frame, lies within `reach` of its own,
 /// |v_t| h + 0.1 sqrt(R overlap), and whose normal within 15 degrees; the nearest pairs are joined first, and none goes

@@ -303,6 +303,7 @@ static void pass_touches(cursor *c, dem_world *w)
         if (!c->out) {
             t->capacity = t->count;
             t->triangle_capacity = t->triangle_count;
+            c->failed |= !dem_mesh_touches_forget(t);
         }
     }
 }

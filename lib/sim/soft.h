@@ -26,6 +26,10 @@
 /// Pairs of spheres count down to this overlap [tau]; with less than the half of it, in part.
 #define DEM_SOFT_REACH 6.0
 
+/// 1 / mass of a patch that nothing would move, as those of lanes without one: with any stiffness its inverse is
+/// finite [1/kg].
+#define DEM_SOFT_HEAVIEST 1e-100
+
 /// The contacts of one pair of bodies, or of a body and a wall, stand in a run. Its first one remembers for all; at a
 /// mesh, where they change places, all do.
 typedef struct dem_soft_runs {

@@ -141,7 +141,7 @@ DEM_INLINE soft_result soft_act(const dem_features f, const soft_spot *spot, con
     soft_result out = {zero, none, none, zero, zero, zero, zero, zero, zero, zero, zero};
     wide_mask on = wide_less(zero, s->depth);
     wide inverse = f.local_mass ? s->share_a + s->share_b : p->a.inverse_mass + p->b.inverse_mass;
-    inverse = wide_select(wide_less(wide_all(1e-300), inverse), inverse, wide_all(1e-300));
+    inverse = wide_select(wide_less(wide_all(DEM_SOFT_HEAVIEST), inverse), inverse, wide_all(DEM_SOFT_HEAVIEST));
     double step = spot->last_step > 0 ? spot->last_step : spot->next_step;
     soft_dashpots d = {
         .mass = contact_mass_of(f, inverse), .uneven = zero, .slide = zero, .slide_damping = zero};

@@ -168,7 +168,7 @@ static void add_patch(const dem_world *w, const patch_members *m, bool listed, d
     double mass = w->features.local_mass ? share : 0;
     for (int side = 0; side < (wall ? 1 : 2) && !w->features.local_mass; side++)
         mass += w->bodies.inertia[DEM_ROW * m->row[side]];
-    mass = 1 / larger(mass, 1e-300);
+    mass = 1 / larger(mass, DEM_SOFT_HEAVIEST);
     add_outer(k, times * (kn - per_tau), &p.mean[0]);
     for (int i = 0; i < 6; i++)
         for (int j = 0; j < 6; j++)

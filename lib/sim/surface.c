@@ -74,7 +74,8 @@ static int turned_contacts(const dem_surface *s, dem_vec3 centre, double radius,
     if (!(near.distance < radius))
         return 0;
     contacts[0] = near;
-    if (dem_surface_most(s) < 2 || s->side < 0 || near.distance <= 0)
+    // across the axis, everything is at least as far as the axis
+    if (r >= radius || dem_surface_most(s) < 2 || s->side < 0 || near.distance <= 0)
         return 1;
     dem_mesh_contact far = on_meridian(s, centre, v3_scale(out, -1), -r, h);
     // the tip is one point, and what is behind the plane of the near contact is out of reach

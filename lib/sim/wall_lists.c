@@ -227,13 +227,21 @@ static void look_at_segment(wall_look *look, size_t segment, const bool *looked)
         }
 }
 
+// In whole blocks, of meshes in a multiple of the places of a ball: its first place is then always in one of the same
+// blocks, its second in one of the next, and most of those that are not first are idle as a whole.
+static size_t padded(const dem_world *w, dem_wall_form form, size_t count)
+{
+    size_t together = DEM_BLOCK_LANES * (form == DEM_FORM_MESH ? w->walls.slots : 1);
+    return (count + together - 1) / together * together;
+}
+
 static bool put_lists(wall_look *look, dem_wall_form form, size_t *needed)
 {
     dem_world *w = look->w;
     dem_contacts *contacts = &w->wall_contacts[form];
     for (size_t i = 0; i < look->list_count; i++)
         if (look->lists[i].form == form) {
-            needed[look->lists[i].segment] = look->lists[i].count;
+            needed[look->lists[i].segment] = padded(w, form, look->lists[i].count);
             contacts->segments[look->lists[i].segment].dirty = true;
         }
     if (!dem_contacts_reserve(w, contacts, (int)form, needed))
@@ -249,7 +257,7 @@ static bool put_lists(wall_look *look, dem_wall_form form, size_t *needed)
         dem_segment *s = &contacts->segments[list->segment];
         const dem_contact_item *items = list->count ? look->items + list->begin : NULL;
         good = dem_extras_keep(&extras, s, items, list->count, &kept);
-        size_t full = (list->count + DEM_BLOCK_LANES - 1) / DEM_BLOCK_LANES * DEM_BLOCK_LANES;
+        size_t full = padded(w, form, list->count);
         segment_set_end(s, full, w->features.soft);
         s->dirty = false;
         for (size_t k = 0; k < full; k++)

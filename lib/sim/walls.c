@@ -90,6 +90,8 @@ dem_status dem_walls_create(const dem_ctx *ctx, const dem_scene *scene, dem_wall
         walls->servo |= walls->items[i].servo.on;
         walls->wear |= walls->items[i].wear.law != DEM_WEAR_NONE;
         walls->rub |= walls->items[i].wear.law == DEM_WEAR_ARCHARD;
+        uint32_t slots = walls->items[i].mesh ? 4 : (uint32_t)dem_surface_most(&walls->items[i].surface);
+        walls->slots = slots > walls->slots ? slots : walls->slots;
     }
     dem_walls_place(walls, 0);
     return walls->servo ? dem_servo_prepare(walls, error) : DEM_OK;

@@ -38,6 +38,7 @@ typedef struct dem_walls {
     size_t count;
     double *rows;
     bool move, sweep, servo, wear, rub;  ///< some do, some are; rub: wear by Archard
+    uint32_t slots;  ///< a ball at a mesh, or another wall of that form, has places for a multiple of so many contacts
 } dem_walls;
 
 /// Errors: DEM_BAD_INPUT, DEM_UNAVAILABLE for a mesh without Embree.

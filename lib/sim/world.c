@@ -15,6 +15,7 @@
 #include "sim/schemes.h"
 #include "sim/servo.h"
 #include "sim/timestep.h"
+#include "sim/touch.h"
 #include "sim/wear.h"
 
 static const char *const pass_names[DEM_PASSES] = {
@@ -177,6 +178,37 @@ static dem_status make_bonds(dem_world *w, dem_error *error)
     return w->bonds->instead ? dem_lists_update(w, error) : DEM_OK;
 }
 
+static size_t body_of_row(const dem_world *w, size_t row)
+{
+    size_t i = 0;
+    while (i < w->bodies.living && w->bodies.place[i] != row)
+        i++;
+    return i;
+}
+
+// Spheres with one centre have no direction to push each other. Where that happens on the way other contacts or the
+// next step help; two bodies that begin in one place would stay there for good.
+static dem_status check_places(const dem_world *w, dem_error *error)
+{
+    for (size_t i = 0; i < w->pairs.count; i++) {
+        const dem_pair *p = &w->pairs.items[i];
+        const dem_segment *s = &w->contacts.segments[p->a / DEM_SEGMENT];
+        dem_vec3 x = body_position(&w->bodies, p->a);
+        double same = 1e-12 * w->bodies.radius[p->a];
+        if (p->a == p->b || v3_distance(x, body_position(&w->bodies, p->b)) > same)
+            continue;
+        for (size_t k = 0; k < p->count; k++) {
+            dem_touch t = dem_touch_of_pair(w, segment_place(s, p->start + k));
+            if (t.overlap >= t.radius[0] + t.radius[1] - same)
+                return dem_fail(error, DEM_BAD_INPUT,
+                                "bodies %zu and %zu stand in one place (%.6g, %.6g, %.6g) m, where nothing pushes them "
+                                "apart; is one of them there twice?",
+                                body_of_row(w, p->a), body_of_row(w, p->b), x.x, x.y, x.z);
+        }
+    }
+    return DEM_OK;
+}
+
 static dem_status make_state(dem_world *w, const dem_scene *scene, dem_error *error)
 {
     dem_body_def *defs = NULL;
@@ -224,6 +256,7 @@ static dem_status make_state(dem_world *w, const dem_scene *scene, dem_error *er
     // good enough for the margins of the first lists
     w->next_step = w->last_step = w->time_def.step > 0 ? w->time_def.step : dem_step_guess(w);
     DEM_TRY(dem_lists_update(w, error));
+    DEM_TRY(check_places(w, error));
     if (w->bonds && w->bonds->due <= 0)
         DEM_TRY(make_bonds(w, error));
     DEM_TRY(dem_step_choose(w, error));
@@ -352,18 +385,41 @@ static void contact_pass(dem_world *w, size_t begin, size_t end, double kick)
     }
 }
 
-static void wall_pass(dem_world *w, size_t begin, size_t end, double kick)
+// contacts with walls of one form from one block of 8 to another
+static void wall_blocks(dem_world *w, size_t form, size_t segment, size_t begin, size_t end, double kick)
 {
     dem_rows rows = world_rows(w);
+    if (begin < end)
+        w->wall_instance->walls[form](w->features, &rows,
+                                      &(dem_contact_job){w->wall_contacts[form].columns, begin, end, w->last_step, kick,
+                                                         w->next_step,
+                                                         &w->tallies[(1 + form) * w->segment_count + segment], NULL});
+}
+
+// with meshes many blocks have no contact now
+static void mesh_blocks(dem_world *w, size_t segment, const dem_segment *s, double kick)
+{
+    const dem_contact_columns *c = &w->wall_contacts[DEM_FORM_MESH].columns;
+    size_t begin = s->begin;
+    for (size_t block = s->begin; block < s->end; block += DEM_BLOCK_LANES) {
+        if (!dem_mesh_block_idle(c, block))
+            continue;
+        wall_blocks(w, DEM_FORM_MESH, segment, begin, block, kick);
+        begin = block + DEM_BLOCK_LANES;
+    }
+    wall_blocks(w, DEM_FORM_MESH, segment, begin, s->end, kick);
+}
+
+static void wall_pass(dem_world *w, size_t begin, size_t end, double kick)
+{
     for (size_t form = 0; form < DEM_WALL_FORMS; form++) {
         const dem_contacts *contacts = &w->wall_contacts[form];
         for (size_t i = begin; contacts->segments && i < end; i++) {
             const dem_segment *s = &contacts->segments[i];
-            if (s->begin < s->end)
-                w->wall_instance->walls[form](w->features, &rows,
-                                              &(dem_contact_job){contacts->columns, s->begin, s->end, w->last_step,
-                                                                 kick, w->next_step,
-                                                                 &w->tallies[(1 + form) * w->segment_count + i], NULL});
+            if (form == DEM_FORM_MESH)
+                mesh_blocks(w, i, s, kick);
+            else
+                wall_blocks(w, form, i, s->begin, s->end, kick);
         }
     }
 }

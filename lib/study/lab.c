@@ -21,7 +21,8 @@ const dem_parameter dem_lab_common_params[LAB_COMMON] = {
     [LAB_BODIES] = {"bodies", 1000, 20, 1e6, "count", "about so many grains"},
 };
 
-static const dem_lab_test *const tests[] = {&dem_lab_pour, &dem_lab_heap};
+static const dem_lab_test *const tests[] = {&dem_lab_pour, &dem_lab_heap, &dem_lab_triaxial, &dem_lab_shear_box,
+                                            &dem_lab_drum};
 
 const dem_lab_test *dem_lab_test_at(size_t index)
 {
@@ -122,6 +123,40 @@ void dem_lab_found(dem_lab *l, const char *name, double value)
             l->figures[i] = value;
 }
 
+double dem_lab_peak(const dem_lab *l, size_t column, size_t width, size_t *at)
+{
+    double most = -INFINITY;
+    size_t all = l->test->column_count;
+    width = width < 1 ? 1 : width > l->rows ? l->rows : width;
+    *at = 0;
+    for (size_t i = 0; i + width <= l->rows; i++) {
+        double sum = 0;
+        for (size_t k = i; k < i + width; k++)
+            sum += l->path[k * all + column];
+        if (sum / (double)width > most) {
+            most = sum / (double)width;
+            *at = i + width / 2;
+        }
+    }
+    return l->rows ? most : NAN;
+}
+
+double dem_lab_mean(const dem_lab *l, size_t column, size_t from)
+{
+    double sum = 0;
+    for (size_t i = from; i < l->rows; i++)
+        sum += l->path[i * l->test->column_count + column];
+    return from < l->rows ? sum / (double)(l->rows - from) : NAN;
+}
+
+double dem_lab_solid(const dem_lab *l)
+{
+    double own = dem_shape_diameter(&l->scene.shapes[0]), cubes = 0;
+    for (size_t i = 0; i < l->sample_count; i++)
+        cubes += pow(l->sample[i].scale, 3);
+    return cubes * DEM_PI / 6 * own * own * own;
+}
+
 double dem_lab_mean_volume(const dem_lab *l)
 {
     // the mean of the cubes of diameters spread evenly
@@ -176,7 +211,8 @@ void dem_lab_put_head(dem_lab *l, dem_buffer *out, double pressure, double frict
     dem_buffer_text(out, "  \"contacts\": [\n");
     put_pair(out, "grain", stiffness, e, friction, false);
     put_pair(out, "rough", stiffness, e, rough, false);
-    put_pair(out, "smooth", stiffness, e, 0, true);
+    // servo walls are quicker with little damping
+    put_pair(out, "smooth", stiffness, larger(e, 0.9), 0, true);
     if (l->grain.multiple != DEM_MULTIPLE_SUM)
         dem_buffer_print(out, "  \"contacts_between_clumps\": \"%s\",\n", multiples[l->grain.multiple]);
     dem_buffer_text(out, "  \"shapes\": { \"grain\": { ");

@@ -41,15 +41,15 @@ typedef struct dem_lab_test {
     double bodies, overlap;  ///< standards of LAB_BODIES and LAB_OVERLAP
     const dem_lab_name *figures;
     size_t figure_count;
+    size_t main_count;            ///< the first so many are what studies compare
     const dem_lab_name *columns;  ///< of the path; NULL: it has none
     size_t column_count;
-    bool prepared;                                          ///< its sample has to be made before, by running scenes
     dem_status (*prepare)(dem_lab *lab, dem_error *error);  ///< NULL: nothing
     void (*write)(dem_lab *lab, dem_buffer *out);           ///< walls, bodies and all that is the test's own
     dem_status (*run)(dem_lab *lab, dem_error *error);
 } dem_lab_test;
 
-extern const dem_lab_test dem_lab_pour, dem_lab_heap;
+extern const dem_lab_test dem_lab_pour, dem_lab_heap, dem_lab_triaxial, dem_lab_shear_box, dem_lab_drum;
 
 /// The index-th test, NULL behind the last.
 const dem_lab_test *dem_lab_test_at(size_t index);
@@ -81,7 +81,7 @@ struct dem_lab {
     dem_body_def *sample;  ///< NULL: bodies are those of the fill
     size_t sample_count;
     const char *sample_file;  ///< where a scene that is written finds them
-    double size[3];           ///< of the sample [m]
+    double low[3], high[3];   ///< the box it fills [m]
     dem_scene scene;
     dem_world *world;
 };
@@ -125,6 +125,12 @@ dem_status dem_lab_keep(dem_lab *lab, dem_error *error);
 dem_status dem_lab_note(dem_lab *lab, const double *row, dem_error *error);
 double dem_lab_now(const dem_lab *lab);
 void dem_lab_found(dem_lab *lab, const char *name, double value);
+/// The largest mean of so many rows of the path one behind the other, and the row in their middle.
+double dem_lab_peak(const dem_lab *lab, size_t column, size_t width, size_t *at);
+/// The mean of the rows from one on.
+double dem_lab_mean(const dem_lab *lab, size_t column, size_t from);
+/// The volume of the sample's grains [m^3].
+double dem_lab_solid(const dem_lab *lab);
 /// The mean volume of a grain over that of a sphere of the diameter [-].
 double dem_lab_mean_volume(const dem_lab *lab);
 /// The farthest point of the largest grain from its centre [m].

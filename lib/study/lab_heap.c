@@ -10,7 +10,7 @@
 
 static const dem_parameter params[] = {
     {"thickness", 5, 3, 100, "d", "of the bed across the slope, which is periodic"},
-    {"height", 0.95, 0.3, 5, "-", "of the bed behind the gate over the length of the ledge"},
+    {"height", 1.3, 0.3, 5, "-", "of the bed behind the gate over the length of the ledge"},
     {"gate_speed", 1, 0.01, 10, "sqrt(g d)", "with which the gate goes up"},
     {"lip", 0.7, 0.1, 3, "d", "height of the lip at the edge, so that the lowest grains do not roll off"},
     {"gravity", 9.81, 1e-6, 1e6, "m/s^2", "downwards"},
@@ -18,8 +18,9 @@ static const dem_parameter params[] = {
 enum { THICKNESS = LAB_COMMON, HEIGHT, GATE_SPEED, LIP, GRAVITY };
 
 static const dem_lab_name figures[] = {
-    {"repose", "deg", "angle of the slope that is left"},
-    {"repose_error", "deg", "standard error of that line"},
+    {"repose", "deg", "angle of the slope that is left, by mass and first moments of the heap"},
+    {"surface_angle", "deg", "by a line through its topmost grains"},
+    {"surface_error", "deg", "standard error of that line"},
     {"coordination", "-", "grains and walls that a grain touches, mean"},
     {"left", "-", "share of the grains that stay"},
 };
@@ -103,21 +104,30 @@ static dem_status measure(dem_lab *l, const heap *h, dem_error *error)
     dem_body_view v = dem_world_bodies(l->world);
     double d = l->values[LAB_DIAMETER];
     dem_vec3 *tops = dem_alloc(v.count, sizeof *tops);
-    if (!tops)
+    double *masses = dem_alloc(v.count, sizeof *masses);
+    if (!tops || !masses) {
+        free(tops);
+        free(masses);
         return dem_fail_memory(error);
+    }
     size_t on = 0;
     for (size_t i = 0; i < v.count; i++)
-        if (v.position[i].z > 0 && v.position[i].x < h->length)
+        if (v.position[i].z > 0 && v.position[i].x < h->length) {
+            masses[on] = v.mass[i];
             tops[on++] = v.position[i];
+        }
+    double whole = dem_slope_of_heap(tops, masses, on, h->length);
     // not near the back wall nor where the slope runs out
     dem_slope_def def = {0.12 * h->length, 0.85 * h->length, 0, h->depth, 1.25 * d};
     dem_slope slope;
     dem_status status = dem_slope_fit(&def, tops, on, &slope, error);
     free(tops);
+    free(masses);
     if (status != DEM_OK)
         return status;
-    dem_lab_found(l, "repose", slope.angle * 180 / DEM_PI);
-    dem_lab_found(l, "repose_error", slope.error * 180 / DEM_PI);
+    dem_lab_found(l, "repose", whole * 180 / DEM_PI);
+    dem_lab_found(l, "surface_angle", slope.angle * 180 / DEM_PI);
+    dem_lab_found(l, "surface_error", slope.error * 180 / DEM_PI);
     dem_lab_found(l, "coordination", dem_world_figures(l->world)->coordination);
     dem_lab_found(l, "left", (double)on / floor(l->values[LAB_BODIES]));
     return DEM_OK;
@@ -145,6 +155,7 @@ const dem_lab_test dem_lab_heap = {
     .overlap = 0.005,
     .figures = figures,
     .figure_count = sizeof figures / sizeof *figures,
+    .main_count = 1,
     .write = write,
     .run = run,
 };

@@ -12,8 +12,8 @@ enum { HEIGHT = LAB_COMMON, GRAVITY };
 
 static const dem_lab_name figures[] = {
     {"void_ratio", "-", "volume of voids over that of grains, in the middle of the bed"},
-    {"solid_fraction", "-", "share of the volume that grains take"},
     {"coordination", "-", "grains that a grain touches, mean"},
+    {"solid_fraction", "-", "share of the volume that grains take"},
     {"overlap", "-", "largest, of a radius"},
 };
 
@@ -92,6 +92,7 @@ const dem_lab_test dem_lab_pour = {
     .overlap = 0.002,
     .figures = figures,
     .figure_count = sizeof figures / sizeof *figures,
+    .main_count = 2,
     .write = write,
     .run = run,
 };

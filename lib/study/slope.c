@@ -71,3 +71,17 @@ dem_status dem_slope_fit(const dem_slope_def *def, const dem_vec3 *tops, size_t 
     free(g.tops);
     return DEM_OK;
 }
+
+// With h(x) = mean + slope (length / 2 - x) and a filling f: mass M = f mean length, D = sum m (length / 2 - x) =
+// f slope length^3 / 12, Z = sum m z = f / 2 (mean^2 length + slope^2 length^3 / 12); f goes out of these.
+double dem_slope_of_heap(const dem_vec3 *places, const double *masses, size_t count, double length)
+{
+    double mass = 0, along = 0, high = 0;
+    for (size_t i = 0; i < count; i++) {
+        mass += masses[i];
+        along += masses[i] * (length / 2 - places[i].x);
+        high += masses[i] * places[i].z;
+    }
+    double scale = mass * mass * length * length + 12 * along * along;
+    return scale > 0 ? atan(24 * along * high / scale) : NAN;
+}

@@ -24,4 +24,9 @@ typedef struct dem_slope {
 dem_status dem_slope_fit(const dem_slope_def *def, const dem_vec3 *tops, size_t count, dem_slope *slope,
                          dem_error *error);
 
+/// The slope of a heap that leans on a wall at x = 0 and ends at x = `length`, out of all of its grains: the straight
+/// surface under which their mass, and its moments along x and z above the floor, are those of an even filling. Far
+/// less noisy than the surface itself where the heap is a few grains long [rad]. NAN: no grains.
+double dem_slope_of_heap(const dem_vec3 *places, const double *masses, size_t count, double length);
+
 #endif

@@ -6,7 +6,8 @@
 #include "sim/state.h"
 
 static const dem_case *const parts[] = {
-    dem_stability_limits,
+    dem_stability_limits, dem_stability_packings, dem_stability_impacts, dem_stability_extremes,
+    dem_stability_rest,   dem_stability_places,   dem_stability_walls,
 };
 
 const dem_case *dem_stability_case(size_t index)

@@ -232,7 +232,7 @@ static void damped(dem_trial *t)
             dashpot d = {ratios[i], slide};
             // an overdamped motion grows by 1 + e a step at e beyond the limit
             dem_limit l =
-                dem_limit_find(t, &(dem_limit_def){make_damped, &d, NUDGE * frequency(), RADIUS, 20000, NULL});
+                dem_limit_find(t, &(dem_limit_def){make_damped, &d, NUDGE * frequency(), RADIUS, 10000, NULL});
             double exact = slide ? 2 * (sqrt(1 + d.ratio * d.ratio) - d.ratio) : normal_limit(d.ratio);
             char name[40];
             snprintf(name, sizeof name, "ratio %g, %s", d.ratio, slide ? "sliding" : "normal");

@@ -63,6 +63,21 @@ model *dem_trial_model(dem_trial *t)
     return t->model;
 }
 
+dem_mesh *dem_trial_mesh(dem_trial *t, size_t vertices, size_t triangles)
+{
+    size_t i = t->model->scene.wall_count++;
+    DEM_ASSERT(i < MODEL_WALLS);
+    dem_wall_def *wall = &t->model->walls[i];
+    *wall = (dem_wall_def){.name = "mesh", .kind = DEM_WALL_MESH};
+    wall->mesh.vertices = dem_alloc_zero(vertices, sizeof *wall->mesh.vertices);
+    wall->mesh.triangles = dem_alloc_zero(3 * triangles, sizeof *wall->mesh.triangles);
+    wall->mesh.vertex_count = vertices;
+    wall->mesh.triangle_count = triangles;
+    if ((!wall->mesh.vertices || !wall->mesh.triangles) && t->status == DEM_OK)
+        t->status = dem_fail_memory(&t->error);
+    return t->status == DEM_OK ? &wall->mesh : NULL;
+}
+
 bool dem_trial_start(dem_trial *t)
 {
     dem_world_destroy(t->world);
@@ -77,8 +92,12 @@ bool dem_trial_start(dem_trial *t)
         dem_ctx ctx = t->ctx ? *t->ctx : (dem_ctx){0};
         ctx.threads = 1;
         t->status = dem_world_create(&ctx, &t->model->scene, &t->world, &t->error);
+        if (t->status == DEM_UNAVAILABLE) {
+            t->status = DEM_OK;
+            t->skipped = "needs something that this build does not have: mesh walls need Embree";
+        }
     }
-    return t->status == DEM_OK;
+    return t->status == DEM_OK && t->world;
 }
 
 static bool ready(const dem_trial *t)
@@ -155,7 +174,7 @@ dem_wall_view dem_trial_wall(dem_trial *t, size_t wall)
 
 static void note(dem_trial *t, dem_finding f, const char *format, va_list arguments)
 {
-    if (t->status != DEM_OK)
+    if (t->status != DEM_OK || t->skipped)
         return;
     if (!dem_grow(&t->findings, &t->capacity, t->count, sizeof *t->findings)) {
         t->status = dem_fail_memory(&t->error);

@@ -69,6 +69,8 @@ void dem_trial_release(dem_trial *trial);
 
 /// An empty model (see model_begin), the one before is ended. Never NULL.
 model *dem_trial_model(dem_trial *trial);
+/// A further wall of the model with a mesh of so many, all zero yet; NULL after a failure.
+dem_mesh *dem_trial_mesh(dem_trial *trial, size_t vertices, size_t triangles);
 /// The world of the model as it is now; the one before is destroyed.
 bool dem_trial_start(dem_trial *trial);
 /// Steps forward; false: it cannot.

@@ -49,7 +49,7 @@ while read -r tool words; do
     sub=
     for word in $words; do
         case $word in
-        verify | stability | convergence | convert) sub=$word ;;
+        verify | stability | convergence | scene | test | shape | dimers | convert) sub=$word ;;
         --[a-z]*)
             "$tools/$tool" $sub --help >help
             grep -Eq -- "$(echo "${word%%=*}" | grep -oE -- '--[a-z-]+')\b" help ||

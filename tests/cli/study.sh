@@ -101,7 +101,53 @@ run 2 dem-study convergence free-top --integrators rk4
 mentions "there is no integrator 'rk4'"
 run 3 dem-study convergence none.json
 run 4 dem-study convergence free-top --levels 2 -o /dev/null/x
-finish
+# ---- measured tests: as scenes, and done
+run 0 dem-study scene --list
+prints '^heap: .*angle of repose'
+prints '^  friction .*default 0\.5'
+run 0 dem-study scene pour -D bodies=60 -D diameter='2 mm' -o pour.json
+run 0 dem-run pour.json --steps 5 -q -o poured
+run 0 dem-study scene triaxial -D bodies=40 -D rate=0.01 -o tri.json
+[ "$(wc -l <tri-bodies.csv)" -eq 41 ] || fail 'bodies of the sample'
+run 0 dem-run tri.json --steps 5 -q -o tried
+run 0 dem-study test pour -D bodies=40 -D overlap=0.02 --json
+python3 -c 'import json; d = json.load(open("out")); assert 0.3 < d["figures"]["void_ratio"] < 1.5' || fail 'JSON of test'
+run 0 dem-study test shear-box -D bodies=40 -D rate=0.05 -D displacement=0.05 -q -o box.html -o box.csv
+head -1 box.csv | grep -q '^displacement_d,shear_stress_Pa,' || fail 'head of box.csv'
+python3 -c 'import xml.dom.minidom; xml.dom.minidom.parse("box.html")' || fail 'box.html is no XML'
+run 2 dem-study scene house
+mentions "there is no test 'house'"
+run 2 dem-study scene pour -D height
+mentions 'has no value; write -D name=value'
+run 2 dem-study test pour -D friction=20
+mentions '-D friction=20 is out of range'
+run 2 dem-study test pour -D colour=1
+mentions "test pour has no 'colour'"
+run 3 dem-study test pour --grain none.json
+
+# ---- shape and dimers: cells that go on
+run 0 dem-study shape --family clusters --tests pour --bodies 40 --seeds 1 -D overlap=0.02 --cells
+[ "$(cat out)" = 4 ] || fail 'number of cells'
+run 0 dem-study shape --family clusters --tests pour --bodies 40 --seeds 1 -D overlap=0.02 --cell 2 -o forms
+prints '3 of 4 cells are not known yet'
+run 0 dem-study shape --family clusters --tests pour --bodies 40 --seeds 1 -D overlap=0.02 --json -o forms
+python3 -c 'import json; d = json.load(open("out")); assert d["missing"] == 0 and len(d["figures"][0]["mean"]) == 4' ||
+    fail 'JSON of shape'
+python3 -c 'import xml.dom.minidom; xml.dom.minidom.parse("forms/shape.html")' || fail 'shape.html is no XML'
+grep -q '^tetrahedron,4,4,pour,void_ratio,-,1,0\.' forms/shape.csv || fail 'shape.csv'
+run 2 dem-study shape
+mentions 'name the mesh of a grain, or a --family'
+run 2 dem-study shape --family clusters --tests walk
+mentions "there is no test 'walk'"
+run 2 dem-study shape grain.obj --spheres 1,x
+mentions '--spheres is numbers with commas between'
+run 3 dem-study shape none.obj -o forms
+run 1 dem-study dimers --bodies 40 --growth 0.02 --steps 60 --aspects 1,1.5 --seeds 1 -o dense
+prints '^off +largest solid fraction|^passed largest solid fraction'
+grep -q '<svg' dense/dimers.html || fail 'no plot of dimers'
+[ "$(wc -l <dense/dimers.csv)" -eq 3 ] || fail 'dimers.csv'
+run 2 dem-study dimers --aspects 1,3
+mentions '--aspects goes from 1 to 2, not to 3'
 
 # ---- stability
 run 0 dem-study stability --list
@@ -112,3 +158,4 @@ run 0 dem-study stability limit-single -q -o stability.html -o stability.csv
 grep -q '<svg' stability.html || fail 'no plot on the page'
 [ "$(wc -l < stability.csv)" -eq 4 ] || fail 'figures in the CSV'
 run 2 dem-study stability --slow
+finish
