@@ -1,5 +1,6 @@
 // Soft contacts in whole scenes: the same bits however they are computed, ledgers that close, steps that hold, walls
 // of every kind.
+#include "sim/diagnose.h"
 #include "soft_cases.h"
 #include "walls.h"
 
@@ -263,6 +264,155 @@ static void meshes_are_as_the_planes_they_stand_for(void **state)
     }
 }
 
+// ---- with what else there is
+
+// clumps of two kinds rain onto a slope and off it, out of the domain
+static model *rain(dem_inlet_def *inlet, dem_mix_def mix[2])
+{
+    model *m = soft_model();
+    mix[0] = (dem_mix_def){model_cloud(m, 12, 0.01, 1), 1, {.largest = INFINITY}};
+    mix[1] = (dem_mix_def){
+        model_cloud(m, 40, 0.012, 2), 1, {.law = DEM_SIZE_UNIFORM, .a = 0.008, .b = 0.014, .largest = INFINITY}};
+    *inlet = (dem_inlet_def){.name = "top",
+                             .low = {0, 0, 0.08},
+                             .high = {0.06, 0.06, 0.11},
+                             .mix = mix,
+                             .mix_count = 2,
+                             .rate = 1200,
+                             .velocity = {0, 0, -0.5},
+                             .spin_spread = 10,
+                             .stop = INFINITY,
+                             .seed = 5};
+    m->scene.inlets = inlet;
+    m->scene.inlet_count = 1;
+    m->scene.gravity = v3(0, 0, -9.81);
+    m->scene.time.step = 3e-5;
+    m->scene.time.end = 1;
+    m->scene.domain.low = v3(-0.1, -0.1, -0.1);
+    m->scene.domain.high = v3(0.12, 0.2, 0.3);
+    m->scene.domain.leaving = DEM_LEAVING_DELETE;
+    model_plane(m, v3(0, 0, 0), v3(0.4, 0, 0.9));
+    model_plane(m, v3(0, 0, 0), v3(0, 1, 0));
+    model_plane(m, v3(0, 0.06, 0), v3(0, -1, 0));
+    return m;
+}
+
+static void bodies_come_and_go(void **state)
+{
+    (void)state;
+    dem_inlet_def inlet;
+    dem_mix_def mix[2];
+    model *m = rain(&inlet, mix);
+    dem_world *w = model_world(m, 1), *other = model_world(m, 2);
+    run_steps(w, 5000);
+    dem_world *again = model_resumed(m, w, 1);
+    run_steps(w, 5000);
+    run_steps(other, 10000);
+    run_steps(again, 5000);
+    const dem_figures *f = measured(w);
+    check(f->came > 150 && f->left > 5 && f->contacts > 20);
+    check(fabs(f->energy.error) < 3e-3);
+    check(dem_world_hash(other) == dem_world_hash(w));
+    check(dem_world_hash(again) == dem_world_hash(w));
+    dem_world_destroy(again);
+    dem_world_destroy(other);
+    dem_world_destroy(w);
+    // of none that are there now, no overlap is likely
+    m->scene.soft.tau = 0;
+    dem_error error;
+    check(dem_world_create(NULL, &m->scene, &w, &error) == DEM_BAD_INPUT && strstr(error.text, "soft.tau"));
+    model_free(m);
+}
+
+// the force of its patch is that of the wall, whatever the number of spheres
+static void servo_walls_reach_their_force(void **state)
+{
+    (void)state;
+    model *m = soft_model();
+    model_body(m, model_cloud(m, 40, 0.01, 2), v3(0, 0, 0.0066));
+    model_plane(m, v3(0, 0, 0), v3(0, 0, 1));
+    model_plane(m, v3(0, 0, 0.0135), v3(0, 0, -1))->servo =
+        (dem_servo_def){.on = true, .direction = {0, 0, -1}, .target = 2, .gain = 0.5, .max_velocity = 0.02};
+    m->scene.time.step = 0;
+    dem_world *w = model_world(m, 1);
+    for (int i = 0; i < 40; i++) {
+        run_steps(w, 1000);
+        measured(w);
+        size_t count;
+        const dem_wall_view *walls = dem_world_walls(w, &count);
+        if (i > 30) {
+            check_near(walls[1].force.z, 2, 0.01);
+            check_near(walls[0].force.z, -2, 0.05);
+        }
+    }
+    dem_world_destroy(w);
+    model_free(m);
+}
+
+// two clumps that overlap and are bonded have no contact until the bond is broken
+static void bonds_stand_for_whole_contacts(void **state)
+{
+    (void)state;
+    for (int i = 0; i < 2; i++) {
+        model *m = soft_model();
+        dem_bond_def bond = dem_bond_defaults();
+        bond.young = 1e7;
+        bond.gap = 1e-4;
+        bond.contact = i == 0 ? DEM_BOND_INSTEAD : DEM_BOND_PARALLEL;
+        m->scene.bonds = &bond;
+        m->scene.bond_count = 1;
+        uint32_t shape = model_cloud(m, 40, 0.01, 2);
+        model_body(m, shape, v3(0, 0, 0));
+        model_body(m, shape, v3(0.0112, 0, 0));
+        m->scene.time.step = 1e-6;
+        dem_world *w = model_world(m, 1);
+        size_t bonds = measured(w)->bonds;
+        check(bonds > 0);
+        check((measured(w)->contacts > 0) == (i == 1));
+        dem_world_destroy(w);
+        model_free(m);
+    }
+}
+
+typedef struct heard {
+    int warnings;
+    char text[256];
+} heard;
+
+static void hear(void *user, dem_log_level level, const char *subject, const char *text)
+{
+    heard *h = user;
+    (void)subject;
+    if (level == DEM_LOG_WARNING && strstr(text, " tau (over 10)")) {
+        h->warnings++;
+        snprintf(h->text, sizeof h->text, "%s", text);
+    }
+}
+
+static void overlaps_of_many_tau_are_told(void **state)
+{
+    (void)state;
+    for (int i = 0; i < 2; i++) {
+        model *m = shaken(8);
+        m->scene.soft.tau = i == 0 ? 4e-4 : 2e-6;
+        heard h = {0};
+        dem_ctx ctx = {.log = hear, .user = &h};
+        dem_world *w;
+        dem_error error;
+        check_ok(dem_world_create(&ctx, &m->scene, &w, &error), error);
+        for (int k = 0; k < 10; k++) {
+            run_steps(w, 300);
+            measured(w);
+            check_ok(dem_world_diagnose(w, &error), error);
+        }
+        double depth = measured(w)->largest_soft_overlap;
+        check(i == 0 ? depth > 0.5 && depth < 10 : depth > 10);
+        check((h.warnings > 0) == (i == 1));
+        dem_world_destroy(w);
+        model_free(m);
+    }
+}
+
 // ---- telling
 
 static void explain_tells_what_the_sum_inflates(void **state)
@@ -295,6 +445,10 @@ int main(void)
         cmocka_unit_test(frames_and_order_do_not_matter),
         cmocka_unit_test(automatic_steps_keep_the_energy),
         cmocka_unit_test(meshes_are_as_the_planes_they_stand_for),
+        cmocka_unit_test(bodies_come_and_go),
+        cmocka_unit_test(servo_walls_reach_their_force),
+        cmocka_unit_test(bonds_stand_for_whole_contacts),
+        cmocka_unit_test(overlaps_of_many_tau_are_told),
         cmocka_unit_test(explain_tells_what_the_sum_inflates),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

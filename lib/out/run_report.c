@@ -75,6 +75,8 @@ static void put_members(dem_json_writer *w, const dem_run_report *r)
     dem_json_put_number(w, "potential_energy", f->energy.potential);
     dem_json_put_number(w, "energy_error", f->energy.error);
     dem_json_put_number(w, "max_overlap_ratio", f->largest_overlap_ratio);
+    if (f->largest_soft_overlap > 0)
+        dem_json_put_number(w, "max_overlap_tau", f->largest_soft_overlap);
     dem_json_put_number(w, "fastest", f->fastest);
     dem_json_put_numbers(w, "centre", (double[]){f->centre.x, f->centre.y, f->centre.z}, 3);
     dem_json_put_number(w, "highest", f->highest);
@@ -211,7 +213,13 @@ static void put_speed(dem_buffer *out, const dem_run_report *r)
     put_number(out, 100 * f->overlap_ratio, 3);
     dem_buffer_text(out, " % of the smaller radius, ");
     put_number(out, 100 * f->largest_overlap_ratio, 3);
-    dem_buffer_text(out, " % at most in the run\n  memory     ");
+    dem_buffer_text(out, " % at most in the run");
+    if (f->largest_soft_overlap > 0) {
+        dem_buffer_text(out, "; soft contacts: ");
+        put_number(out, f->largest_soft_overlap, 3);
+        dem_buffer_text(out, " tau at most");
+    }
+    dem_buffer_text(out, "\n  memory     ");
     put_number(out, r->bytes_per_clump, 4);
     dem_buffer_text(out, " bytes per clump\n");
 }

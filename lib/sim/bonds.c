@@ -252,6 +252,13 @@ static int compare_spheres(const dem_bond *bond, uint32_t a, uint32_t b, uint32_
     return 0;
 }
 
+static bool is_instead(const dem_world *w, const dem_pair *pair, const dem_bond *bond)
+{
+    dem_vec3 shift = w->periodic ? v3_sub(from_array(w->shifts + 4 * pair->image), shift_of(w, bond)) : v3(0, 0, 0);
+    bool same = v3_norm2(shift) < w->skin * w->skin * 1e-6;
+    return same && bond->state == DEM_BOND_INTACT && w->bonds->defs[bond->def].contact == DEM_BOND_INSTEAD;
+}
+
 static bool stands_for(const dem_world *w, const dem_pair *pair, uint32_t sphere_a, uint32_t sphere_b)
 {
     const dem_bonds *b = w->bonds;
@@ -267,9 +274,19 @@ static bool stands_for(const dem_world *w, const dem_pair *pair, uint32_t sphere
         const dem_bond *bond = &b->items[b->live[low]];
         if (compare_spheres(bond, pair->a, pair->b, sphere_a, sphere_b) != 0)
             return false;
-        dem_vec3 shift = w->periodic ? v3_sub(from_array(w->shifts + 4 * pair->image), shift_of(w, bond)) : v3(0, 0, 0);
-        bool same = v3_norm2(shift) < w->skin * w->skin * 1e-6;
-        if (same && bond->state == DEM_BOND_INTACT && b->defs[bond->def].contact == DEM_BOND_INSTEAD)
+        if (is_instead(w, pair, bond))
+            return true;
+    }
+    return false;
+}
+
+// soft contacts are of whole bodies, so one bond stands for all
+static bool stands_for_all(const dem_world *w, const dem_pair *pair)
+{
+    const dem_bonds *b = w->bonds;
+    for (size_t i = b->first[pair->a]; i < b->first[pair->a + 1]; i++) {
+        const dem_bond *bond = &b->items[b->live[i]];
+        if (bond->a == pair->a && bond->b == pair->b && is_instead(w, pair, bond))
             return true;
     }
     return false;
@@ -281,6 +298,8 @@ size_t dem_bonds_mask(const dem_world *w, const dem_pair *pair, uint32_t *sphere
     uint32_t first_b = w->templates.items[w->bodies.shape[pair->b]].first;
     if (w->bonds->first[pair->a] == w->bonds->first[pair->a + 1])
         return count;
+    if (w->features.soft)
+        return stands_for_all(w, pair) ? 0 : count;
     size_t kept = 0;
     for (size_t i = 0; i < count; i++)
         if (!stands_for(w, pair, first_a + spheres[2 * i], first_b + spheres[2 * i + 1])) {

@@ -111,11 +111,6 @@ dem_status dem_bonds_create(dem_world *w, const dem_scene *scene, const dem_body
     dem_bonds *b = w->bonds = dem_alloc_zero(1, sizeof *b);
     if (!b || !copy_defs(b, scene) || !set_members(w, scene, defs))
         return dem_fail_memory(error);
-    if (b->instead && w->features.soft)
-        return dem_fail(
-            error, DEM_BAD_INPUT,
-            "bonds cannot stand for contacts that are \"soft\", which are of whole bodies; write \"contact\": "
-            "\"parallel\", or other contacts_between_clumps");
     b->part_broke = dem_alloc_zero((size_t)w->threads, sizeof *b->part_broke);
     set_due(b);
     double radius = w->population ? dem_population_largest(w->population) : 0;
@@ -307,7 +302,9 @@ static dem_status bond_spheres(dem_world *w, const dem_pair *pair, dem_vec3 shif
                         "\"damping\"",
                         b->defs[which].name);
     // a contact that goes takes its energy along
-    if (w->steps && b->defs[which].contact == DEM_BOND_INSTEAD)
+    const dem_bond *before = b->count > old ? bond - 1 : NULL;
+    bool told = w->features.soft && before && before->a == bond->a && before->b == bond->b;  // it is of the whole bodies
+    if (w->steps && b->defs[which].contact == DEM_BOND_INSTEAD && !told)
         bond->broken = dem_contact_elastic(w, bond->a, bond->b, bond->sphere_a, bond->sphere_b);
     b->count += !is_bonded(b, old, &b->items[b->count]);
     return DEM_OK;

@@ -12,9 +12,11 @@ typedef enum warning {
     WARN_ENERGY,
     WARN_SEARCH,
     WARN_INLET,
+    WARN_SOFT,
 } warning;
 
 static const double PENETRATION = 0.05;  // of the smaller radius
+static const double SOFT_DEPTH = 10;     // of tau
 static const double TUNNEL = 0.1;        // of a radius in a step
 static const double ENERGY_OFF = 0.01;   // of the energy turned over
 static const double CONTACT_STEPS = 10;  // least number of steps in a contact
@@ -63,6 +65,17 @@ static void judge_penetration(dem_world *w, double critical)
                 "bodies overlap by %.2g %% of the smaller radius (over %g %%): the contacts are too soft for these "
                 "speeds and weights; %.2g times the stiffness would do, or bodies that start apart",
                 100 * ratio, 100 * PENETRATION, pow(much, power));
+}
+
+// with more the soft maximum is nearly the deepest overlap alone, whose place jumps from sphere to sphere
+static void judge_soft(dem_world *w)
+{
+    double depth = w->views.figures.largest_soft_overlap;
+    if (depth > SOFT_DEPTH && worse(w, WARN_SOFT, depth))
+        dem_log(w->ctx, DEM_LOG_WARNING,
+                "soft contacts overlap by %.3g tau (over %g): the spheres begin to be felt; give a larger tau, \"soft\": "
+                "{ \"tau\": %.2g }",
+                depth, SOFT_DEPTH, 0.25 * depth * w->soft.tau);
 }
 
 static void judge_walls(dem_world *w)
@@ -151,6 +164,7 @@ dem_status dem_world_diagnose(dem_world *w, dem_error *error)
     DEM_TRY(dem_step_stable(w, false, &bound, error));
     judge_step(w, bound.step);
     judge_penetration(w, bound.step);
+    judge_soft(w);
     judge_walls(w);
     judge_speed(w);
     judge_energy(w);

@@ -44,6 +44,12 @@ static bool extend_segments(dem_world *w, size_t segments)
         good = good && extend(&w->mesh_touches, old, segments, sizeof *w->mesh_touches);
     if (w->wear_events)
         good = good && extend(&w->wear_events, old, segments, sizeof *w->wear_events);
+    if (w->features.soft) {
+        good = good && extend(&w->contacts.runs, old, segments, sizeof(dem_soft_runs));
+        for (int form = 0; form < DEM_WALL_FORMS; form++)
+            if (w->wall_contacts[form].segments)
+                good = good && extend(&w->wall_contacts[form].runs, old, segments, sizeof(dem_soft_runs));
+    }
     good = good && extend_tallies(w, segments);
     if (good)
         w->segment_count = segments;
@@ -87,6 +93,9 @@ dem_status dem_world_grow(dem_world *w, size_t rows, dem_error *error)
                 extend(&w->asked, padded, w->bodies.padded, sizeof *w->asked) && dem_views_grow(w);
     if (w->features.watch)
         good = good && extend(&w->strained, padded, w->bodies.padded, sizeof *w->strained);
+    if (w->features.soft)
+        good = good && extend(&w->soft.first, padded, w->bodies.padded, sizeof *w->soft.first) &&
+               extend(&w->soft.radius, padded, w->bodies.padded, sizeof *w->soft.radius);
     if (!good)
         return dem_fail_memory(error);
     if (w->bonds && !dem_bonds_grow(w, old))

@@ -33,6 +33,7 @@ typedef struct dem_rows {
 typedef struct dem_tally {
     double friction[DEM_BLOCK_LANES], viscous[DEM_BLOCK_LANES], broken[DEM_BLOCK_LANES], work[DEM_BLOCK_LANES];
     double overlap_ratio;
+    double soft_overlap;  ///< largest D of soft contacts [m]
 } dem_tally;
 
 /// What one contact does, for measuring.

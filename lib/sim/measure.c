@@ -105,6 +105,8 @@ double dem_contact_elastic(dem_world *w, uint32_t a, uint32_t b, uint32_t sphere
     for (size_t at = s->begin; at < s->end; at++) {
         const dem_contact_record *r = &w->views.records[at - s->begin];
         bool same = c->a[at] == a && c->b[at] == b && c->sphere_a[at] == sphere_a && c->sphere_b[at] == sphere_b;
+        if (w->features.soft)
+            same = c->a[at] == a && c->b[at] == b;
         if (same && r->touches)
             sum += r->elastic_normal + r->elastic_slide + r->elastic_turn;
     }
@@ -480,6 +482,14 @@ static void balance(dem_world *w)
         e->error = w->views.most_energy > 0 ? off / w->views.most_energy : 0;
 }
 
+static double largest_soft_overlap(const dem_world *w)
+{
+    double largest = 0;
+    for (size_t i = 0; i < w->segment_count * (1 + DEM_WALL_FORMS); i++)
+        largest = fmax(largest, w->tallies[i].soft_overlap);
+    return w->features.soft ? largest / w->soft.tau : 0;
+}
+
 static double largest_overlap(const dem_world *w)
 {
     double largest = 0;
@@ -534,6 +544,7 @@ dem_status dem_world_measure(dem_world *w, dem_error *error)
         dem_regions_measure(w->regions, &views);
     }
     v->figures.largest_overlap_ratio = fmax(largest_overlap(w), v->figures.overlap_ratio);
+    v->figures.largest_soft_overlap = largest_soft_overlap(w);
     w->clocks[DEM_PASS_MEASURE].seconds += dem_clock() - begin;
     return DEM_OK;
 }

@@ -112,10 +112,6 @@ dem_status dem_population_create(dem_world *w, const dem_scene *scene, dem_error
 {
     if (!scene->inlet_count && w->domain.leaving != DEM_LEAVING_DELETE)
         return DEM_OK;
-    if (w->multiple == DEM_MULTIPLE_SOFT)
-        return dem_fail(error, DEM_BAD_INPUT,
-                        "\"contacts_between_clumps\": \"soft\" does not go with bodies that come or go; leave out "
-                        "\"inlets\" and \"leaving\": \"delete\", or take \"sum\"");
     dem_population *p = w->population = dem_alloc_zero(1, sizeof *p);
     if (!p)
         return dem_fail_memory(error);
@@ -226,6 +222,7 @@ dem_status dem_population_add(dem_world *w, const dem_body_def *def, uint32_t *r
         *row = free_row(b);
     }
     dem_body_put(w, *row, def);
+    DEM_TRY(dem_soft_join(w, *row, error));
     b->id[*row] = (uint32_t)p->next_id++;
     if (w->bonds)
         dem_bonds_join(w, *row);

@@ -454,6 +454,7 @@ dem_status dem_world_restore(dem_world *w, const void *bytes, size_t size, dem_e
     if (c.failed || c.left || !sound(w))
         return refuse(error, "does not fit the scene; resume with the scene it was made from");
     dem_views_number(w);
+    DEM_TRY(dem_soft_join_all(w, error));
     if (w->bonds && !dem_bonds_list(w))
         return dem_fail_memory(error);
     dem_walls_place(&w->walls, dem_world_time(w));

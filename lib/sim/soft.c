@@ -34,6 +34,8 @@ double dem_soft_likely_overlap(const dem_world *w)
     double speed = dem_step_impact_speed(w), sum = 0;
     size_t n = w->laws.material_count, count = 0;
     for (size_t row = 0; row < w->bodies.count; row++) {
+        if (body_absent(&w->bodies, row))
+            continue;
         uint32_t material = w->templates.items[w->bodies.shape[row]].material;
         double mass = w->bodies.inertia[DEM_ROW * row + 5] / 2, own = 0;
         for (uint32_t other = 0; other < n; other++) {
@@ -51,50 +53,54 @@ static double automatic_tau(const dem_world *w)
 {
     double least = INFINITY;
     for (size_t row = 0; row < w->bodies.count; row++)
-        least = smaller(least, size_of(w, row));
+        if (!body_absent(&w->bodies, row))
+            least = smaller(least, size_of(w, row));
     if (!isfinite(least))
         return 1;  // there are no bodies
     return larger(TAU_LEAST * least, smaller(TAU_MOST * least, SHARE * dem_soft_likely_overlap(w)));
 }
 
-// one table of weights for each shape and rung of sizes that is in use
-typedef struct rung {
-    uint32_t shape;
-    int step;
-    uint32_t first;
-} rung;
-
-static dem_status make_weights(dem_world *w, dem_error *error)
+// the table of weights of a shape at a rung of sizes; NULL: no memory
+static const dem_soft_table *table_of(dem_world *w, uint32_t shape, int rung)
 {
-    rung *rungs = NULL;
-    size_t count = 0, capacity = 0, filled = 0, room = 0;
-    dem_status status = DEM_OK;
-    for (size_t row = 0; row < w->bodies.count && status == DEM_OK; row++) {
-        uint32_t shape = w->bodies.shape[row];
-        const dem_template *t = &w->templates.items[shape];
-        int step = (int)lround(log(body_scale(&w->bodies, row)) / log(RUNG));
-        size_t k = 0;
-        while (k < count && !(rungs[k].shape == shape && rungs[k].step == step))
-            k++;
-        if (k == count) {
-            bool good = dem_grow(&rungs, &capacity, count, sizeof *rungs);
-            while (good && room < filled + t->count)
-                good = dem_grow(&w->soft.weights, &room, room, sizeof *w->soft.weights);
-            good =
-                good && dem_soft_weigh((const double(*)[4])w->templates.spheres + t->first, t->count,
-                                       w->soft.tau / pow(RUNG, step), t->equivalent_diameter, w->soft.weights + filled);
-            if (!good) {
-                status = dem_fail_memory(error);
-                break;
-            }
-            rungs[count++] = (rung){shape, step, (uint32_t)filled};
-            filled += t->count;
-        }
-        w->soft.first[row] = rungs[k].first - t->first;
-    }
-    w->soft.table_count = count;
-    free(rungs);
-    return status;
+    dem_soft *soft = &w->soft;
+    for (size_t k = 0; k < soft->table_count; k++)
+        if (soft->tables[k].shape == shape && soft->tables[k].rung == rung)
+            return &soft->tables[k];
+    const dem_template *t = &w->templates.items[shape];
+    if (!dem_grow(&soft->tables, &soft->table_capacity, soft->table_count, sizeof *soft->tables))
+        return NULL;
+    while (soft->weight_capacity < soft->weight_count + t->count)
+        if (!dem_grow(&soft->weights, &soft->weight_capacity, soft->weight_capacity, sizeof *soft->weights))
+            return NULL;
+    if (!dem_soft_weigh((const double(*)[4])w->templates.spheres + t->first, t->count, soft->tau / pow(RUNG, rung),
+                        t->equivalent_diameter, soft->weights + soft->weight_count))
+        return NULL;
+    dem_soft_table *table = &soft->tables[soft->table_count++];
+    *table = (dem_soft_table){shape, rung, (uint32_t)soft->weight_count};
+    soft->weight_count += t->count;
+    return table;
+}
+
+dem_status dem_soft_join(dem_world *w, size_t row, dem_error *error)
+{
+    if (!w->features.soft)
+        return DEM_OK;
+    uint32_t shape = w->bodies.shape[row];
+    const dem_soft_table *table = table_of(w, shape, (int)lround(log(body_scale(&w->bodies, row)) / log(RUNG)));
+    if (!table)
+        return dem_fail_memory(error);
+    w->soft.first[row] = table->first - w->templates.items[shape].first;
+    w->soft.radius[row] = size_of(w, row) / 2;
+    return DEM_OK;
+}
+
+dem_status dem_soft_join_all(dem_world *w, dem_error *error)
+{
+    for (size_t row = 0; w->features.soft && row < w->bodies.count; row++)
+        if (!body_absent(&w->bodies, row))
+            DEM_TRY(dem_soft_join(w, row, error));
+    return DEM_OK;
 }
 
 static dem_status check_features(const dem_world *w, dem_error *error)
@@ -117,6 +123,7 @@ static dem_status check_features(const dem_world *w, dem_error *error)
                                                  .ledger = true,
                                                  .watch = true,
                                                  .moving = true,
+                                                 .reaction = true,
                                                  .soft = true};
 #define FEATURE(name, about)                                                                                           \
     if (other.name && !allowed.name)                                                                                   \
@@ -140,12 +147,15 @@ dem_status dem_soft_create(dem_world *w, double tau, dem_error *error)
     w->soft.work = dem_alloc_zero((size_t)w->threads, sizeof *w->soft.work);
     if (!w->soft.first || !w->soft.radius || !w->soft.work)
         return dem_fail_memory(error);
-    for (size_t row = 0; row < w->bodies.count; row++)
-        w->soft.radius[row] = size_of(w, row) / 2;
     w->soft.automatic = !(tau > 0);
+    if (w->soft.automatic && w->population && !w->bodies.living)
+        return dem_fail(
+            error, DEM_BAD_INPUT,
+            "soft.tau cannot be \"auto\" where all bodies are still to come; give it, about a fourth of the "
+            "largest overlap that you expect");
     w->soft.tau = tau > 0 ? tau : automatic_tau(w);
     w->ahead = DEM_SOFT_REACH * w->soft.tau;
-    return make_weights(w, error);
+    return dem_soft_join_all(w, error);
 }
 
 static void release_work(dem_soft_work *work)
@@ -173,6 +183,7 @@ void dem_soft_release(dem_world *w)
         release_work(&w->soft.work[t]);
     free(w->soft.work);
     free(w->soft.weights);
+    free(w->soft.tables);
     free(w->soft.first);
     free(w->soft.radius);
 }

@@ -54,6 +54,13 @@ typedef struct dem_soft_work {
     dem_soft_patch *patches;
 } dem_soft_work;
 
+/// The weights that bodies of one shape and of about the same size share.
+typedef struct dem_soft_table {
+    uint32_t shape;
+    int rung;        ///< of sizes
+    uint32_t first;  ///< weight
+} dem_soft_table;
+
 typedef struct dem_soft {
     double tau;           ///< [m]; 0: contacts are not soft
     bool automatic;       ///< tau was not given
@@ -62,7 +69,8 @@ typedef struct dem_soft {
     double *radius;       ///< [bodies] of curvature [m]
     dem_soft_work *work;  ///< [threads]
     size_t capacity;      ///< contacts in each
-    size_t table_count;   ///< tables of weights that were made
+    dem_soft_table *tables;
+    size_t table_count, table_capacity, weight_count, weight_capacity;
     const struct dem_soft_kernels *kernels;
 } dem_soft;
 
@@ -93,6 +101,10 @@ static inline int soft_group(const dem_soft_leaders *leaders, dem_vec3 normal)
 /// soft.c. Refuses what soft contacts do not have. Nothing where contacts are not soft.
 dem_status dem_soft_create(dem_world *world, double tau, dem_error *error);
 void dem_soft_release(dem_world *world);
+
+/// A body has come to a row, or to many.
+dem_status dem_soft_join(dem_world *world, size_t row, dem_error *error);
+dem_status dem_soft_join_all(dem_world *world, dem_error *error);
 
 /// The mean over the bodies of the overlap that a likely impact with their like has [m].
 double dem_soft_likely_overlap(const dem_world *world);

@@ -397,6 +397,7 @@ static void put_records(const soft_job *job, const soft_eight *e, size_t l, cons
 static bool find_depths(const soft_job *job, soft_eight *e, size_t l)
 {
     double tau = job->w->soft.tau;
+    double largest = job->tally->soft_overlap;
     bool some = false;
     for (size_t i = l; i < l + DEM_WIDTH; i++) {
         double sum = e->sum[i], deepest = e->deepest[i];
@@ -404,8 +405,10 @@ static bool find_depths(const soft_job *job, soft_eight *e, size_t l)
         // log S <= S - 1
         if (sum > 0 && (e->remembers[i] || deepest / tau + sum > 1))
             e->depth[i] = larger(e->depth[i], deepest + tau * log(sum));
+        largest = larger(largest, e->depth[i]);
         some |= e->depth[i] > 0 || e->remembers[i];
     }
+    job->tally->soft_overlap = largest;
     return some;
 }
 

@@ -241,7 +241,7 @@ struct dem_world {
     dem_wear_events *wear_events;  ///< [segments] (wear)
     dem_pass_time clocks[DEM_PASSES];
     uint64_t searches;  ///< for pairs, since the world was made
-    double warned[8];
+    double warned[9];
     const dem_ctx *ctx;
     dem_ctx own_ctx;
 };

@@ -217,9 +217,6 @@ static dem_status make_state(dem_world *w, const dem_scene *scene, dem_error *er
     DEM_TRY(dem_templates_create(scene, &w->templates, error));
     DEM_TRY(dem_laws_create(scene, &w->laws, error));
     DEM_TRY(dem_walls_create(w->ctx, scene, &w->walls, error));
-    if ((w->walls.servo || w->walls.rub) && w->multiple == DEM_MULTIPLE_SOFT)
-        return dem_fail(error, DEM_BAD_INPUT,
-                        "servo walls and wear by Archard cannot measure soft contacts yet; set contacts_between_clumps to \"sum\"");
     DEM_TRY(dem_population_create(w, scene, error));
     DEM_TRY(dem_place_bodies(w, scene, &defs, &count, error));
     set_holds(w, scene, defs, count);

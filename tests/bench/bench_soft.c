@@ -1,6 +1,6 @@
 // What soft contacts cost and give beside the sum of all, for clumps of one grain with ever more spheres: the tables of
 // tests/bench/soft.sh. Prints one line for each clump given.
-//   bench_soft CASE MODE TAU CLUMP...     CASE wall|twin|bounce|paths|oblique|cost, MODE sum|mean|merge|soft
+//   bench_soft CASE MODE TAU CLUMP...     CASE wall|twin|twins|bounce|paths|oblique|cost, MODE sum|mean|merge|soft
 #include <time.h>
 
 #include "../soft_cases.h"
@@ -209,10 +209,12 @@ static flight perfect(flight f, double mass, double step, int steps)
             spring = v3_along(spring, step, slip);
             dem_vec3 drag = v3_along(v3_scale(spring, kt), 2 * zeta * sqrt(kt * m), slip);
             double size = v3_norm(drag), held = kt * v3_norm(spring);
-            if (size > MU * normal)
+            // the spring keeps what it has below the cap, also while the dashpot slides: as in law/friction.h
+            if (size > MU * normal) {
                 drag = v3_scale(drag, MU * normal / size);
-            if (held > MU * normal)
-                spring = v3_scale(drag, 1 / kt);
+                if (held > MU * normal)
+                    spring = v3_scale(drag, 1 / kt);
+            }
             force = v3_add(v3(0, 0, normal), drag);
         } else
             spring = v3(0, 0, 0);
@@ -234,7 +236,7 @@ static void oblique(const bench *b)
     m->laws[0].friction = DEM_FRICTION_LINEAR;
     m->laws[0].friction_coefficient = MU;
     double mass = 2500 * 4 * DEM_PI / 3 * SEMI.x * SEMI.y * SEMI.z, t = DEM_PI * sqrt(mass / STIFFNESS);
-    m->scene.time.step = t / 500;
+    m->scene.time.step = t / 2000;  // what the order of the step is to the error is below .001
     m->materials[0].density = 2500;
     dem_world *w = model_world(m, 1);
     dem_random r = random_stream(1, 4);
@@ -242,16 +244,68 @@ static void oblique(const bench *b)
     for (int i = 0; i < ORIENTATIONS; i++) {
         flight start = {.q = random_quat(&r), .v = v3(speed * sqrt(0.5), 0, -speed * sqrt(0.5))};
         start.x = v3(0, 0, -lowest(start.q).z + 0.2 * OVERLAP);
-        flight want = perfect(start, mass, t / 5000, 20000);
+        flight want = perfect(start, mass, t / 10000, 40000);
         soft_place(w, 0, start.x, start.q);
         soft_placed(w);
         soft_throw(w, 0, start.v);
-        run_steps(w, 2000);
+        run_steps(w, 8000);
         measured(w);
         dem_body_view v = dem_world_bodies(w);
         error += (v3_distance(v.velocity[0], want.v) + 0.5 * v3_distance(v.spin[0], want.spin)) / speed / ORIENTATIONS;
     }
     printf("%6zu  rebound error %6.4f\n", b->spheres, error);
+    dem_world_destroy(w);
+    model_free(m);
+}
+
+// ---- twins that meet obliquely with friction, beside the same of the last clump given with soft contacts, the
+// finest
+
+typedef struct rebound {
+    dem_vec3 v, spin;  // of the second twin
+} rebound;
+
+static rebound finest[ORIENTATIONS];
+static double places[ORIENTATIONS];
+static dem_vec3 normals[ORIENTATIONS];
+
+static rebound meet(dem_world *w, const dem_quat q[2], int i, double speed, int steps)
+{
+    dem_vec3 across = v3_normal_to(normals[i]);
+    soft_place(w, 0, v3(0, 0, 0), q[0]);
+    soft_place(w, 1, v3_along(v3(places[i], 0, 0), 0.5 * OVERLAP, normals[i]), q[1]);
+    soft_throw(w, 0, v3(0, 0, 0));
+    soft_throw(w, 1, v3_along(v3_scale(normals[i], -speed), 0.6 * speed, across));
+    soft_placed(w);
+    run_steps(w, steps);
+    measured(w);
+    dem_body_view v = dem_world_bodies(w);
+    return (rebound){v.velocity[1], v.spin[1]};
+}
+
+static void twins(const bench *b, bool last)
+{
+    model *m = new_model(b, 2, false);
+    m->laws[0].damping = DEM_DAMPING_RESTITUTION;
+    m->laws[0].restitution = RESTITUTION;
+    m->laws[0].friction = DEM_FRICTION_LINEAR;
+    m->laws[0].friction_coefficient = MU;
+    double mass = 2500 * DEM_PI / 6 / 2, t = DEM_PI * sqrt(mass / STIFFNESS), speed = OVERLAP * sqrt(STIFFNESS / mass);
+    m->scene.time.step = t / 1000;
+    dem_world *w = model_world(m, 1);
+    dem_random r = random_stream(1, 6);
+    double error = 0;
+    for (int i = 0; i < ORIENTATIONS; i++) {
+        dem_quat q[2] = {random_quat(&r), random_quat(&r)};
+        if (last)
+            places[i] = soft_twin_place(w, q[0], q[1], -1e-6, &normals[i]);
+        rebound got = meet(w, q, i, speed, 4000);
+        if (last)
+            finest[i] = got;
+        error += (v3_distance(got.v, finest[i].v) + 0.5 * v3_distance(got.spin, finest[i].spin)) / speed / ORIENTATIONS;
+    }
+    if (!last)
+        printf("%6zu  rebound differs from the finest by %6.4f\n", b->spheres, error);
     dem_world_destroy(w);
     model_free(m);
 }
@@ -323,6 +377,19 @@ static void cost(const bench *b)
     model_free(m);
 }
 
+static dem_clump *read_clump(bench *b, const char *file)
+{
+    dem_clump *clump;
+    dem_error error;
+    if (dem_clump_read(file, &clump, &error) != DEM_OK) {
+        fprintf(stderr, "%s\n", error.text);
+        exit(3);
+    }
+    b->clump = clump;
+    b->spheres = dem_clump_view(clump).ball_count;
+    return clump;
+}
+
 int main(int argc, char **argv)
 {
     static const char *const modes[] = {"sum", "mean", "merge", "soft"};
@@ -337,13 +404,19 @@ int main(int argc, char **argv)
     for (int i = 0; i < 4; i++)
         if (strcmp(argv[2], modes[i]) == 0)
             b.mode = (dem_multiple)i;
+    bool beside = strcmp(argv[1], "twins") == 0;
+    if (beside) {
+        dem_multiple mode = b.mode;
+        dem_clump *clump = read_clump(&b, argv[argc - 1]);
+        b.mode = DEM_MULTIPLE_SOFT;
+        twins(&b, true);
+        b.mode = mode;
+        dem_clump_destroy(clump);
+    }
     for (int k = 4; k < argc; k++) {
-        dem_clump *clump;
-        dem_error error;
-        if (dem_clump_read(argv[k], &clump, &error) != DEM_OK)
-            return fprintf(stderr, "%s\n", error.text), 3;
-        b.clump = clump;
-        b.spheres = dem_clump_view(clump).ball_count;
+        dem_clump *clump = read_clump(&b, argv[k]);
+        if (beside)
+            twins(&b, false);
         for (size_t i = 0; i < sizeof cases / sizeof *cases; i++)
             if (strcmp(argv[1], cases[i].name) == 0)
                 cases[i].run(&b);

@@ -141,6 +141,7 @@ typedef struct dem_figures {
     double coordination;           ///< mean number of bodies and walls a body touches [-]
     double overlap_ratio;          ///< largest overlap over the smaller radius now [-]
     double largest_overlap_ratio;  ///< of the run so far [-]
+    double largest_soft_overlap;   ///< of soft contacts of the run so far, over tau [-]
     double fastest;                ///< largest speed of a surface point [m/s]
     dem_vec3 centre;               ///< mean of the centres of mass, by mass [m]
     double highest;                ///< largest coordinate of a surface along -gravity (z without gravity) [m]
