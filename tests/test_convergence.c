@@ -139,6 +139,33 @@ static void free_tops_are_as_in_the_table(void **state)
     finish(&s);
 }
 
+static void other_tops_are_as_in_the_table(void **state)
+{
+    (void)state;
+    // lsym, spiral and no-squish at w h = 0.083 and 0.096
+    static const struct {
+        const char *scene;
+        double angle[3], energy;
+    } rows[] = {
+        {"dzhanibekov", {5.58e-3, 3.1e-3, 2.62e-2}, 8.335e-5},
+        {"plate", {1.798e-4, 2.447e-2, 7.699e-2}, 1.522e-6},
+    };
+    for (size_t i = 0; i < 2; i++) {
+        study s;
+        prepare(&s, rows[i].scene);
+        add_rotation(&s, DEM_ROTATION_SPIRAL);
+        add_rotation(&s, DEM_ROTATION_NO_SQUISH);
+        run_study(&s);
+        check(!s.found.chaotic);
+        for (size_t m = 0; m < 3; m++)
+            check_close(error_at(&s, m, 1, DEM_QUANTITY_TURN), rows[i].angle[m], 0.05);
+        check_close(error_at(&s, 0, 1, DEM_QUANTITY_ENERGY), rows[i].energy, 0.05);
+        // of a plate the coarsest step is taken in two
+        check_near(order_of(&s, 0, DEM_QUANTITY_TURN).order, 2, 0.02);
+        finish(&s);
+    }
+}
+
 static void heavy_top_tells_schemes_apart(void **state)
 {
     (void)state;
@@ -156,6 +183,9 @@ static void heavy_top_tells_schemes_apart(void **state)
         check_near(order_of(&s, i, DEM_QUANTITY_TURN).order, orders[i], 0.06);
         check(isnan(error_at(&s, i, 1, DEM_QUANTITY_ENERGY)));
     }
+    // the reference has a quarter of the finest step, and is off by 1/16 of what that is: 1/15 of what is seen
+    const dem_error_found *finest = &s.found.points[3].errors[DEM_QUANTITY_TURN];
+    check_close(finest->doubt, finest->error / 15, 0.1);
     finish(&s);
 }
 
@@ -393,6 +423,9 @@ static void unstable_steps_are_told(void **state)
     s.model->scene.time.step = 0.05 / 8;
     check(dem_convergence_run(NULL, &s.def, &s.found, &error) == DEM_FAILED);
     assert_non_null(strstr(error.text, "own step"));
+    s.model->scene.time.step = 1e-300;
+    check(dem_convergence_run(NULL, &s.def, &s.found, &error) == DEM_USAGE);
+    assert_non_null(strstr(error.text, "larger time.step"));
     finish(&s);
 }
 
@@ -402,6 +435,7 @@ int main(void)
         cmocka_unit_test(order_is_fitted_where_it_holds),
         cmocka_unit_test(confidence_is_that_of_student),
         cmocka_unit_test(free_tops_are_as_in_the_table),
+        cmocka_unit_test(other_tops_are_as_in_the_table),
         cmocka_unit_test(heavy_top_tells_schemes_apart),
         cmocka_unit_test(smooth_contact_is_of_order_2),
         cmocka_unit_test(recommended_setting_is_as_good_as_asked),

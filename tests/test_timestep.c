@@ -377,6 +377,35 @@ static void nothing_that_touches_sets_no_limit(void **state)
     model_free(m);
 }
 
+// a sphere between two walls, whose bound is its limit, at the automatic step: local damping takes the limit below the
+// usual safety of it, and so does fast global damping
+static void an_automatic_step_knows_of_local_and_global_damping(void **state)
+{
+    (void)state;
+    static const struct {
+        double local, viscous;
+    } cases[] = {{0.7, 0}, {0.95, 0}, {0, 2000}, {0, 1e5}, {0.7, 2000}};
+    double w = sqrt(2 * 1e4 / (2500 * 4 * DEM_PI / 3 * 1e-6));
+    for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
+        model *m = model_new();
+        m->scene.damping.local = cases[i].local;
+        m->scene.damping.viscous = cases[i].viscous;
+        m->scene.time.step = 0;
+        m->scene.time.contact_steps = 0;  // stability alone
+        model_plane(m, v3(0, 0, 0.0001 - 0.01), v3(0, 0, 1));
+        model_plane(m, v3(0, 0, 0.01 - 0.0001), v3(0, 0, -1));
+        model_body(m, model_sphere(m, 0.01), v3(0, 0, 0))->velocity.z = 1e-9;
+        dem_world *world = model_world(m, 1);
+        double c = cases[i].viscous, h = dem_world_critical_step(world);
+        check_close((1 + cases[i].local) * w * w * h * h + 2 * c * h, 4, 1e-9);
+        check(dem_world_step_size(world) <= 0.8 * h * (1 + 1e-12));
+        run_steps(world, 3000);
+        check(fabs(measured(world)->energy.kinetic) < 1e-18 && fabs(position_now(world, 0).z) < 1e-10);
+        dem_world_destroy(world);
+        model_free(m);
+    }
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -390,6 +419,7 @@ int main(void)
         cmocka_unit_test(heaps_blow_up_beyond_the_bound_never_below),
         cmocka_unit_test(lagged_dashpots_lower_the_limit_as_predicted),
         cmocka_unit_test(nothing_that_touches_sets_no_limit),
+        cmocka_unit_test(an_automatic_step_knows_of_local_and_global_damping),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

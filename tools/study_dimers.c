@@ -285,7 +285,7 @@ int study_dimers(int argc, char **argv)
     static const char epilogue[] =
         "Examples:\n"
         "  dem-study dimers                                    9 aspect ratios, 3 seeds\n"
-        "  dem-study dimers --bodies 100 --growth 0.01 --steps 500 --aspects 1,1.4,2 --seeds 2   a quick look\n"
+        "  dem-study dimers --bodies 100 --seeds 2    a quick look\n"
         "  dem-study dimers --cell $SLURM_ARRAY_TASK_ID        one cell of an array; without --cell for the page\n"
         "Exit status: 0 done, 1 off what is known, 2 wrong usage, 4 cannot write, 130 interrupted.";
     dem_jam_def jam = dem_jam_defaults();

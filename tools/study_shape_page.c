@@ -133,7 +133,7 @@ static void say_enough(dem_buffer *out, const sheet *s, const shown *item)
         dem_buffer_print(
             out, "from %.0f spheres on not to be told from %.0f spheres (%s +- %s), in %s of the run time",
             s->x[item->enough], s->x[last], text[0], text[1],
-            dem_format_double(text[0], 32, s->seconds[item->test][item->enough] / s->seconds[item->test][last], 2));
+            dem_format_double(text[2], 32, s->seconds[item->test][item->enough] / s->seconds[item->test][last], 2));
 }
 
 // from where on no figure changes

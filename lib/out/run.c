@@ -19,6 +19,7 @@
 
 static const double LOOK_EVERY = 0.1;        // [s] of the wall's clock: progress, signals
 static const double DIAGNOSE_EVERY = 5;      // [s] of the wall's clock, at least: warnings
+static const double DIAGNOSE_SHARE = 0.01;   // of the time, at most: a million bodies take seconds to look at
 static const double EVENT_TOLERANCE = 1e-6;  // of a step: how much before its time an event counts as due
 
 typedef struct runner {
@@ -37,6 +38,7 @@ typedef struct runner {
     uint64_t last_step;                               // 0: by time
     double next_frame, next_series, next_network, next_checkpoint;  // [s]; the last by either clock
     double started, diagnosed;                        // by the wall's clock
+    double diagnosing;                                // what it took the last time [s]
     double output_seconds, timed_since;
     uint64_t timed_from;     // step
     uint64_t measured_step;  // of the views; UINT64_MAX: none
@@ -162,10 +164,12 @@ static dem_status do_events(runner *r, dem_error *error)
         DEM_TRY(write_checkpoint(r, error));
         r->next_checkpoint = next_multiple(wall_or_time(r), o->checkpoint);
     }
-    if (dem_clock() - r->diagnosed > DIAGNOSE_EVERY) {
+    double now = dem_clock();
+    if (now - r->diagnosed > DIAGNOSE_EVERY && now - r->diagnosed > r->diagnosing / DIAGNOSE_SHARE) {
         DEM_TRY(measure(r, error));
         DEM_TRY(dem_world_diagnose(r->w, error));
         r->diagnosed = dem_clock();
+        r->diagnosing = r->diagnosed - now;
     }
     r->output_seconds += dem_clock() - begin;
     return DEM_OK;

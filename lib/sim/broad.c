@@ -414,33 +414,45 @@ static uint32_t moved_image(const search *s, const dem_pair *p)
     return image_row(image[0], image[1], image[2]);
 }
 
-// as many pairs as asked for, on the memory that is there
+// room for as many pairs as asked for, without their links, on the memory that is there
 static bool take_pairs(dem_pairs *pairs, size_t bodies, size_t count)
 {
-    size_t room = pairs->capacity;
-    bool good = true;
     if (!pairs->first) {
         pairs->first = dem_alloc(bodies + 1, sizeof *pairs->first);
         pairs->adjacency_first = dem_alloc(bodies + 1, sizeof *pairs->adjacency_first);
     }
-    if (count > room || !pairs->items) {
-        room = count + count / 8;
+    if (count > pairs->capacity || !pairs->items) {
         free(pairs->items);
+        pairs->capacity = count + count / 8;
+        pairs->items = dem_alloc(pairs->capacity, sizeof *pairs->items);
+    }
+    bool good = pairs->first && pairs->adjacency_first && pairs->items;
+    pairs->count = good ? count : 0;
+    pairs->capacity = good ? pairs->capacity : 0;
+    return good;
+}
+
+// the links of the old pairs, which are not needed any more, serve the new ones
+static bool take_links(dem_pairs *pairs, dem_pairs *old, size_t bodies)
+{
+    pairs->adjacency = old->adjacency;
+    pairs->adjacency_limit = old->adjacency_limit;
+    pairs->fresh = old->fresh;
+    old->adjacency = old->fresh = NULL;
+    old->adjacency_limit = NULL;
+    if (old->capacity < pairs->count || !pairs->fresh) {
         free(pairs->adjacency);
         free(pairs->adjacency_limit);
         free(pairs->fresh);
-        pairs->items = dem_alloc(room, sizeof *pairs->items);
-        pairs->adjacency = dem_alloc(2 * room, sizeof *pairs->adjacency);
-        pairs->adjacency_limit = dem_alloc(2 * room, sizeof *pairs->adjacency_limit);
-        pairs->fresh = dem_alloc(room, sizeof *pairs->fresh);
-    }
-    good = pairs->first && pairs->adjacency_first && pairs->items && pairs->adjacency && pairs->adjacency_limit &&
-           pairs->fresh;
-    pairs->count = good ? count : 0;
-    pairs->capacity = good ? room : 0;
+        pairs->adjacency = dem_alloc(2 * pairs->capacity, sizeof *pairs->adjacency);
+        pairs->adjacency_limit = dem_alloc(2 * pairs->capacity, sizeof *pairs->adjacency_limit);
+        pairs->fresh = dem_alloc(pairs->capacity, sizeof *pairs->fresh);
+    } else
+        pairs->capacity = pairs->capacity < old->capacity ? pairs->capacity : old->capacity;
+    bool good = pairs->adjacency && pairs->adjacency_limit && pairs->fresh;
     if (good) {
         memset(pairs->adjacency_first, 0, (bodies + 1) * sizeof *pairs->adjacency_first);
-        memset(pairs->fresh, 0, count * sizeof *pairs->fresh);
+        memset(pairs->fresh, 0, pairs->count * sizeof *pairs->fresh);
     }
     return good;
 }
@@ -517,6 +529,10 @@ static dem_status replace_pairs(search *s, dem_error *error)
         return dem_fail_memory(error);
     DEM_TRY(sort_near(s, pairs->first, &near, error));
     merge_pairs(s, near, &s->w->pairs, pairs, s->limits);
+    if (!take_links(pairs, &s->w->pairs, s->w->bodies.count)) {
+        pairs->count = 0;
+        return dem_fail_memory(error);
+    }
     link_adjacency(s, pairs, s->limits);
     dem_pairs old = s->w->pairs;
     s->w->pairs = *pairs;

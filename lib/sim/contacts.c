@@ -218,21 +218,46 @@ dem_contact_item dem_contact_idle(const dem_world *w, int form)
 
 // ---- lists of pairs
 
+enum { HISTORY = 10 };
+
+typedef struct entry {
+    uint32_t a, b, sphere_a, sphere_b, shift, law;
+    uint32_t old;  // 1 + its place in the old list, from the begin of its segment; 0: it is new
+} entry;
+
+// A list in the making. What its contacts remember is copied column by column, a third of the time of contact by
+// contact: each column is one row of memory, and most of them are absent.
 typedef struct list {
-    dem_contact_item *items;
+    entry *items;
     size_t count, capacity;
-    dem_contact_extras extras;
-    dem_extras_kept kept;
+    double *columns[HISTORY + DEM_EXTRAS_MOST];  // that remember
+    size_t column_count;
+    double *kept;  // [columns * count]
+    size_t kept_capacity;
 } list;
 
+static list list_of(const dem_contact_columns *c)
+{
+    double *const history[HISTORY] = {c->spring[0], c->spring[1], c->spring[2], c->dash[0],  c->dash[1],
+                                      c->dash[2],   c->twist,     c->patch,     c->attached, c->loss};
+    const dem_contact_extras extras = dem_extras_of(c);
+    list l = {.count = 0};
+    for (int k = 0; k < HISTORY; k++)
+        if (history[k])
+            l.columns[l.column_count++] = history[k];
+    for (int k = 0; k < extras.count; k++)
+        l.columns[l.column_count++] = extras.column[k];
+    return l;
+}
+
 // whether the k-th old contact of a pair comes before this one; both lists are sorted by their spheres
-static bool comes_before(const dem_contact_columns *c, size_t at, const dem_contact_item *item)
+static bool comes_before(const dem_contact_columns *c, size_t at, const entry *item)
 {
     return c->sphere_a[at] != item->sphere_a ? c->sphere_a[at] < item->sphere_a : c->sphere_b[at] < item->sphere_b;
 }
 
 // the spring of the old contact of these spheres; `k` goes through the old list of the pair beside the new one
-static void take_history(const dem_world *w, const dem_segment *s, const dem_pair *p, dem_contact_item *item, size_t *k)
+static void take_history(const dem_world *w, const dem_segment *s, const dem_pair *p, entry *item, size_t *k)
 {
     const dem_contact_columns *c = &w->contacts.columns;
     while (*k < p->count && comes_before(c, segment_place(s, p->start + *k), item))
@@ -242,54 +267,70 @@ static void take_history(const dem_world *w, const dem_segment *s, const dem_pai
     size_t at = segment_place(s, p->start + *k);
     if (c->sphere_a[at] != item->sphere_a || c->sphere_b[at] != item->sphere_b)
         return;
-    item->history = dem_history_get(c, at);
     item->old = (uint32_t)(at - s->begin) + 1;
 }
 
 // what the first one of the pair remembers stands for all
-static void take_soft_history(const dem_world *w, const dem_segment *s, const dem_pair *p, dem_contact_item *item)
+static void take_soft_history(const dem_segment *s, const dem_pair *p, entry *item)
 {
     if (p->count)
-        item->history = dem_history_get(&w->contacts.columns, segment_place(s, p->start));
+        item->old = (uint32_t)(segment_place(s, p->start) - s->begin) + 1;
 }
 
-static bool add_item(list *l, const dem_contact_item *item)
+static bool make_room(list *l, size_t more)
 {
-    if (!dem_grow(&l->items, &l->capacity, l->count, sizeof *l->items))
+    if (l->count + more <= l->capacity)
+        return true;
+    size_t capacity = (l->count + more) * 3 / 2 + 64;
+    entry *items = realloc(l->items, capacity * sizeof *items);
+    if (!items)
         return false;
-    l->items[l->count++] = *item;
+    l->items = items;
+    l->capacity = capacity;
     return true;
+}
+
+// the contacts of a pair that stays as it is
+static void list_again(const dem_contact_columns *c, const dem_segment *s, const dem_pair *p, list *l)
+{
+    if (!p->count)
+        return;
+    size_t block = p->start % s->across, lane = p->start / s->across;
+    for (size_t i = 0; i < p->count; i++) {
+        uint32_t place = (uint32_t)(block * DEM_BLOCK_LANES + lane);  // as segment_place has it
+        size_t at = s->begin + place;
+        l->items[l->count++] =
+            (entry){p->a, p->b, c->sphere_a[at], c->sphere_b[at], p->image, c->law ? c->law[at] : 0, place + 1};
+        if (++block == s->across) {
+            block = 0;
+            lane++;
+        }
+    }
 }
 
 static bool list_pair(const dem_world *w, const dem_segment *s, dem_pair *p, const dem_fresh *fresh, list *l)
 {
     size_t start = l->count, old = 0;
+    if (!make_room(l, fresh ? fresh->count : p->count))
+        return false;
     if (!fresh)
-        for (size_t i = 0; i < p->count; i++) {
-            size_t at = segment_place(s, p->start + i);
-            dem_contact_item item = dem_contact_get(&w->contacts.columns, at);
-            item.old = (uint32_t)(at - s->begin) + 1;
-            item.shift = p->image;
-            if (!add_item(l, &item))
-                return false;
-        }
+        list_again(&w->contacts.columns, s, p, l);
     else {
         const dem_template *a = &w->templates.items[w->bodies.shape[p->a]];
         const dem_template *b = &w->templates.items[w->bodies.shape[p->b]];
         const uint32_t *pairs = fresh->count ? w->candidates[fresh->thread].pairs + 2 * fresh->begin : NULL;
         for (size_t i = 0; i < fresh->count; i++) {
-            dem_contact_item item = {.a = p->a,
-                                     .b = p->b,
-                                     .sphere_a = a->first + pairs[2 * i],
-                                     .sphere_b = b->first + pairs[2 * i + 1],
-                                     .shift = p->image,
-                                     .law = w->laws.table[a->material * w->laws.material_count + b->material]};
+            entry item = {.a = p->a,
+                          .b = p->b,
+                          .sphere_a = a->first + pairs[2 * i],
+                          .sphere_b = b->first + pairs[2 * i + 1],
+                          .shift = p->image,
+                          .law = w->laws.table[a->material * w->laws.material_count + b->material]};
             if (!w->features.soft)
                 take_history(w, s, p, &item, &old);
             else if (i == 0)
-                take_soft_history(w, s, p, &item);
-            if (!add_item(l, &item))
-                return false;
+                take_soft_history(s, p, &item);
+            l->items[l->count++] = item;
         }
     }
     p->start = (uint32_t)start;
@@ -323,6 +364,51 @@ static void set_targets(dem_world *w, size_t segment, const list *l)
     }
 }
 
+static bool keep_memory(const dem_segment *s, list *l)
+{
+    size_t needed = l->column_count * l->count;
+    if (needed > l->kept_capacity) {
+        free(l->kept);
+        l->kept_capacity = needed + needed / 2;
+        l->kept = dem_alloc(l->kept_capacity, sizeof *l->kept);
+        if (!l->kept)
+            return false;
+    }
+    double *to = l->kept;
+    for (size_t e = 0; e < l->column_count; e++)
+        for (size_t k = 0; k < l->count; k++)
+            *to++ = l->items[k].old ? l->columns[e][s->begin + l->items[k].old - 1] : 0;
+    return true;
+}
+
+// the whole list to its places, which are those of segment_place
+static void put_list(dem_contact_columns *c, const dem_segment *s, const list *l)
+{
+    size_t k = 0;
+    for (size_t lane = 0; k < l->count; lane++)
+        for (size_t block = 0; block < s->across; block++, k++) {
+            const entry *item = &l->items[k];
+            size_t at = s->begin + block * DEM_BLOCK_LANES + lane;
+            c->a[at] = item->a;
+            c->b[at] = c->target[at] = item->b;
+            c->sphere_a[at] = item->sphere_a;
+            c->sphere_b[at] = item->sphere_b;
+            if (c->shift)
+                c->shift[at] = item->shift;
+            if (c->law)
+                c->law[at] = item->law;
+            if (c->weight)
+                c->weight[at] = 1;
+        }
+    const double *from = l->kept;
+    for (size_t e = 0; e < l->column_count; e++) {
+        k = 0;
+        for (size_t lane = 0; k < l->count; lane++)
+            for (size_t block = 0; block < s->across; block++, k++)
+                l->columns[e][s->begin + block * DEM_BLOCK_LANES + lane] = *from++;
+    }
+}
+
 static bool rebuild_segment(dem_world *w, size_t segment, list *l)
 {
     dem_segment *s = &w->contacts.segments[segment];
@@ -335,16 +421,15 @@ static bool rebuild_segment(dem_world *w, size_t segment, list *l)
             return false;
         w->pairs.fresh[i] = 0;
     }
+    if (!make_room(l, DEM_BLOCK_LANES))
+        return false;
     dem_contact_item idle = dem_contact_idle(w, -1);
     while (l->count % DEM_BLOCK_LANES)
-        if (!add_item(l, &idle))
-            return false;
-    if (!dem_extras_keep(&l->extras, s, l->items, l->count, &l->kept))
+        l->items[l->count++] = (entry){.a = idle.a, .b = idle.b, .sphere_a = idle.sphere_a, .sphere_b = idle.sphere_b};
+    if (!keep_memory(s, l))
         return false;
     segment_set_end(s, l->count, w->features.soft);
-    for (size_t k = 0; k < l->count; k++)
-        dem_contact_put(&w->contacts.columns, segment_place(s, k), &l->items[k]);
-    dem_extras_give(&l->extras, s, l->count, l->count, &l->kept);
+    put_list(&w->contacts.columns, s, l);
     set_targets(w, segment, l);
     s->dirty = false;
     return true;
@@ -367,7 +452,7 @@ static void count_needs(const dem_world *w, size_t *contacts, size_t *slots)
     }
 }
 
-static bool reserve_slots(dem_world *w, const size_t *needed)
+static bool reserve_slots(dem_world *w, const size_t *needed, bool *moved)
 {
     dem_contacts *contacts = &w->contacts;
     bool fits = true;
@@ -384,6 +469,7 @@ static bool reserve_slots(dem_world *w, const size_t *needed)
         total += s->slot_capacity;
         s->dirty = true;  // all slots move
     }
+    *moved = true;
     free(contacts->slot_body);
     contacts->slot_body = dem_alloc_zero(total, sizeof *contacts->slot_body);
     contacts->slot_capacity = total;
@@ -408,7 +494,7 @@ static void rebuild_part(void *user, int part)
     rebuilding *r = user;
     if (part >= r->parts)
         return;
-    list l = {.extras = dem_extras_of(&r->w->contacts.columns)};
+    list l = list_of(&r->w->contacts.columns);
     size_t parts = (size_t)r->parts, from = r->count * (size_t)part / parts, to = r->count * ((size_t)part + 1) / parts;
     for (size_t i = from; i < to; i++)
         if (!rebuild_segment(r->w, r->segments[i], &l)) {
@@ -416,7 +502,7 @@ static void rebuild_part(void *user, int part)
             break;
         }
     free(l.items);
-    free(l.kept.numbers);
+    free(l.kept);
 }
 
 dem_status dem_contacts_rebuild(dem_world *w, dem_error *error)
@@ -426,8 +512,8 @@ dem_status dem_contacts_rebuild(dem_world *w, dem_error *error)
     if (!needed)
         return dem_fail_memory(error);
     count_needs(w, needed, slots);
-    bool good = reserve_slots(w, slots);
-    if (good)
+    bool moved = false, good = reserve_slots(w, slots, &moved);
+    if (moved)
         count_needs(w, needed, slots);
     good = good && dem_contacts_reserve(w, &w->contacts, -1, needed);
     rebuilding r = {.w = w, .segments = needed, .parts = 1};

@@ -8,6 +8,7 @@
 #include "sim/broad.h"
 
 enum { PAIRS_TO_SHARE = 256 };  // expired pairs that are worth more than one thread
+enum { AHEAD = 6 };             // looks that memory is asked for ahead
 
 static const double HORIZON = 80;                             // steps that a margin should last
 static const double MARGIN_LEAST = 0.01, MARGIN_MOST = 0.15;  // of the length that suits the shape
@@ -174,6 +175,8 @@ static bool collect_expired(dem_world *w)
     w->fresh_count = 0;
     for (size_t k = 0; k < w->asked_count; k++) {
         uint32_t row = w->asked[k];
+        if (k + AHEAD < w->asked_count)
+            __builtin_prefetch(&pairs->adjacency_limit[pairs->adjacency_first[w->asked[k + AHEAD]]]);
         for (size_t i = pairs->adjacency_first[row]; i < pairs->adjacency_first[row + 1]; i++) {
             uint32_t pair = pairs->adjacency[i];
             // a pair that both bodies ask for is taken once
@@ -209,6 +212,23 @@ static void apply(dem_world *w, const dem_fresh *fresh, size_t index)
         pairs->fresh[fresh->pair] = 0;
 }
 
+// what the looks to come will wait for: first the pair, then its bodies and its contacts' segment
+static void fetch(const dem_world *w, size_t k, size_t end)
+{
+    if (k + 2 * AHEAD < end)
+        __builtin_prefetch(&w->pairs.items[w->fresh[k + 2 * AHEAD].pair]);
+    if (k + AHEAD >= end)
+        return;
+    const dem_pair *p = &w->pairs.items[w->fresh[k + AHEAD].pair];
+    for (int side = 0; side < 2; side++) {
+        uint32_t row = side ? p->b : p->a;
+        __builtin_prefetch(body_pose(&w->bodies, row));
+        __builtin_prefetch(body_pose(&w->bodies, row) + 8);
+        __builtin_prefetch(w->bodies.inertia + DEM_ROW * row);
+        __builtin_prefetch(&w->bodies.radius[row]);
+    }
+}
+
 // a share of the expired pairs
 static void look_at_part(void *user, int part)
 {
@@ -219,7 +239,9 @@ static void look_at_part(void *user, int part)
     dem_candidates *c = &w->candidates[part];
     c->count = 0;
     c->failed = false;
-    for (size_t i = count * (size_t)part / parts; i < count * ((size_t)part + 1) / parts && !c->failed; i++) {
+    size_t end = count * ((size_t)part + 1) / parts;
+    for (size_t i = count * (size_t)part / parts; i < end && !c->failed; i++) {
+        fetch(w, i, end);
         w->fresh[i].thread = (uint32_t)part;
         c->failed = !look_at_pair(w, &w->fresh[i]);
     }

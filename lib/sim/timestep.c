@@ -53,9 +53,23 @@ double dem_largest_eigenvalue6(double a[6][6])
 
 // ---- the bound
 
-// the h at which h^2 k + 2 h c = 4
-static double limit_of(double k, double c)
+// Local damping makes forces against the motion larger by this.
+static double grown(const dem_world *w)
 {
+    return 1 + w->damping.local;
+}
+
+// of 4, what contacts and damping take of the room in a step
+static double taken_by(const dem_world *w, double h, double k, double c)
+{
+    return grown(w) * h * (h * k + 2 * c) + 2 * h * w->damping.viscous;
+}
+
+// the h at which that is 4
+static double limit_of(const dem_world *w, double k, double c)
+{
+    k *= grown(w);
+    c = c * grown(w) + w->damping.viscous;
     return k > 0 || c > 0 ? 4 / (c + sqrt(c * c + 4 * k)) : INFINITY;
 }
 
@@ -271,13 +285,13 @@ static dem_step_bound body_bound(const dem_world *w, size_t row, bool listed)
         add_bonds(w, row, &p);
     double k = dem_largest_eigenvalue6(p.stiffness),
            c = w->laws.damped || w->features.rolling || w->bonds ? dem_largest_eigenvalue6(p.damping) : 0;
-    return (dem_step_bound){k, c, limit_of(k, c), row};
+    return (dem_step_bound){k, c, limit_of(w, k, c), row};
 }
 
 dem_status dem_step_stable(dem_world *w, bool listed, dem_step_bound *bound, dem_error *error)
 {
     DEM_TRY(dem_mesh_touch_measure_all(w, error));
-    *bound = (dem_step_bound){.step = INFINITY};
+    *bound = (dem_step_bound){.step = limit_of(w, 0, 0)};
     for (size_t row = 0; row < w->bodies.count; row++) {
         if (body_absent(&w->bodies, row))
             continue;
@@ -401,20 +415,26 @@ static void set_step(dem_world *w, double step)
 double dem_step_guess(const dem_world *w)
 {
     double step = dem_step_accurate(w);
-    return isfinite(step) ? step : w->time_def.end > 0 ? w->time_def.end / 1000 : 1e-3;
+    if (!isfinite(step))
+        step = w->time_def.end > 0 ? w->time_def.end / 1000 : 1e-3;
+    // global damping must not turn a velocity round
+    return w->damping.viscous > 0 ? smaller(step, 1 / w->damping.viscous) : step;
+}
+
+// what the contacts of a body may strain it further, with so much of the room taken
+static double strain_left(const dem_world *w, double taken)
+{
+    double most = 4 * safety(w) * safety(w);
+    return larger(most - taken, LEAST_REST * most) / grown(w);
 }
 
 // what a body may strain before it is asked: nothing is known of it
-static double strain_unasked(const dem_world *w)
-{
-    return 4 * safety(w) * safety(w);
-}
-
 static void forget_limits(dem_world *w)
 {
+    double unasked = strain_left(w, taken_by(w, w->next_step, 0, 0));
     for (size_t row = 0; row < w->bodies.count; row++)
         if (!body_absent(&w->bodies, row))
-            w->bodies.strain_limit[row] = strain_unasked(w);
+            w->bodies.strain_limit[row] = unasked;
 }
 
 dem_status dem_step_choose(dem_world *w, dem_error *error)
@@ -424,9 +444,10 @@ dem_status dem_step_choose(dem_world *w, dem_error *error)
         dem_step_bound bound;
         DEM_TRY(dem_step_stable(w, false, &bound, error));
         step = smaller(safety(w) * bound.step, dem_step_guess(w));
-        forget_limits(w);
     }
     w->next_step = step;
+    if (w->features.watch)
+        forget_limits(w);
     return DEM_OK;
 }
 
@@ -446,8 +467,7 @@ static double ask_body(dem_world *w, const dem_strained *s, double step)
     dem_step_bound own = body_bound(w, s->row, false);
     double allowed = safety(w) * own.step, h = step <= allowed ? step : LOWER_BY * allowed;
     // of 4 safety^2, what the contacts take by their eigenvalues; others may come until the rest is used up
-    double taken = h * (h * own.eigenvalue + 2 * own.damping), most = strain_unasked(w);
-    w->bodies.strain_limit[s->row] = s->strain + larger(most - taken, LEAST_REST * most);
+    w->bodies.strain_limit[s->row] = s->strain + strain_left(w, taken_by(w, h, own.eigenvalue, own.damping));
     return h;
 }
 
@@ -474,9 +494,10 @@ dem_status dem_step_review(dem_world *w, dem_error *error)
     if (again)
         step = raised_step(w, step, error);
     // a lower step strains less: what bodies were allowed stays good
-    if (step > w->next_step)
-        forget_limits(w);
+    bool raised = step > w->next_step;
     set_step(w, step);
+    if (raised)
+        forget_limits(w);
     w->clocks[DEM_PASS_STEP].seconds += dem_clock() - begin;
     return DEM_OK;
 }

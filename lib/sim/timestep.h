@@ -6,6 +6,9 @@
 /// contacts with other bodies counted twice: with the largest eigenvalues of M^-1 K and M^-1 C of each, a bound and not
 /// an estimate. (Normal dashpots are corrected for the old velocity, law/normal.h, and so take less than C.)
 ///
+/// Damping of the whole motion counts, too: local damping of alpha makes forces against the motion larger, K and C by
+/// 1 + alpha, and global damping of the rate c adds c M to C. (The drag of a fluid is implicit and takes nothing.)
+///
 /// Accuracy: an automatic step also takes the shortest contact in a number of steps (`contact_steps`).
 ///
 /// An automatic step is watched in every step: the contact loop sums for each body what its touching contacts take at

@@ -253,9 +253,9 @@ static dem_status make_state(dem_world *w, const dem_scene *scene, dem_error *er
     // good enough for the margins of the first lists
     w->next_step = w->last_step = w->time_def.step > 0 ? w->time_def.step : dem_step_guess(w);
     DEM_TRY(dem_lists_update(w, error));
-    DEM_TRY(check_places(w, error));
     if (w->bonds && w->bonds->due <= 0)
         DEM_TRY(make_bonds(w, error));
+    DEM_TRY(check_places(w, error));
     DEM_TRY(dem_step_choose(w, error));
     // the first step kicks for half of it, which takes the momenta from the time of the positions
     w->last_step = 0;

@@ -9,7 +9,8 @@
 #include "base/status.h"
 
 static const double TINY = 1e-12, SMALL = 1e-6;
-static const double CHAOTIC = 1e6;  // distance over that at the start
+static const double CHAOTIC = 1e6;      // distance over that at the start
+static const double MOST_STEPS = 1e12;  // of the finest run: a month and more
 enum { LEAST_SAMPLES = 16 };
 
 // ---- what a result depends on
@@ -68,6 +69,15 @@ static void choose_steps(dem_convergence_plan *p, double step)
     p->coarsest = (uint64_t)ceil(coarsest / (double)p->samples - 1e-6) * p->samples;
 }
 
+static dem_status check_steps(const dem_convergence_plan *p, double step, dem_error *error)
+{
+    double finest = p->scene.time.end / step * exp2((double)p->def->levels);
+    if (finest < MOST_STEPS)
+        return DEM_OK;
+    return dem_fail(error, DEM_USAGE, "the finest run would take %.1e steps; take a larger time.step or less levels",
+                    finest);
+}
+
 // three runs, each a third of the way
 typedef struct thirds {
     const dem_ctx *ctx;
@@ -91,6 +101,7 @@ static dem_status run_three(dem_convergence_plan *p, const dem_ctx *ctx, dem_cou
         courses[0] = (dem_course){.least_step = p->scene.time.step, .contact = INFINITY};
     else
         DEM_TRY(dem_course_run(&part, &def, &courses[0], error));
+    DEM_TRY(check_steps(p, courses[0].least_step, error));
     for (t.run = 1; t.run < 3 && !*courses[0].failed; t.run++) {
         choose_steps(p, courses[0].least_step);
         def.samples = p->samples;

@@ -75,7 +75,7 @@ dem_limit dem_limit_find(dem_trial *t, const dem_limit_def *d)
     if (t->status != DEM_OK)
         return l;
     l.predicted = dem_world_critical_step(t->world);
-    double low = 0.25, high = 4;
+    double low = 0.26, high = 4;
     for (int i = 0; i < HALVINGS && t->status == DEM_OK; i++) {
         double middle = sqrt(low * high), grown = growth(t, d, middle * l.predicted);
         if (d->curve)
@@ -85,7 +85,7 @@ dem_limit dem_limit_find(dem_trial *t, const dem_limit_def *d)
         else
             high = middle;
     }
-    l.measured = low > 0.25 && high < 4 ? sqrt(low * high) * l.predicted : NAN;
+    l.measured = low > 0.26 && high < 4 ? sqrt(low * high) * l.predicted : NAN;
     return l;
 }
 

@@ -29,7 +29,7 @@ typedef struct dem_limit {
     double measured;   ///< beyond which it blows up [s]
 } dem_limit;
 
-/// Finds both; the measured one by bisection between a quarter and four times the predicted one.
+/// Finds both; the measured one by bisection between .26 and 4 times the predicted one.
 dem_limit dem_limit_find(dem_trial *trial, const dem_limit_def *def);
 /// The axes of its plot.
 void dem_limit_plot(dem_trial *trial);

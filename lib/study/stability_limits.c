@@ -249,6 +249,87 @@ static void damped(dem_trial *t)
     }
 }
 
+// ---- what else slows bodies
+
+// between planes, with global damping, local damping or the drag of a fluid of the same rate
+typedef enum slowed { VISCOUS, LOCAL, FLUID, VERY } slowed;
+
+static void make_slowed(dem_trial *t, const void *user)
+{
+    model *m = t->model;
+    make_single(t, NULL);
+    switch (*(const slowed *)user) {
+    case VISCOUS:
+        m->scene.damping.viscous = 2 * frequency();
+        break;
+    case LOCAL:
+        m->scene.damping.local = 0.7;
+        break;
+    case FLUID:  // Stokes: 6 pi viscosity r / m
+        m->scene.damping.drag = (dem_drag_def){
+            .density = 1e-9, .viscosity = 2 * frequency() * model_ball_mass(RADIUS) / (6 * DEM_PI * RADIUS)};
+        break;
+    case VERY:
+        m->scene.damping.viscous = 100 * frequency();
+        break;
+    }
+}
+
+static void slow(dem_trial *t)
+{
+    static const char *const names[] = {"global, critical", "local, 0.7", "drag of a fluid, critical",
+                                        "global, 50 times critical"};
+    dem_limit_plot(t);
+    for (int i = VISCOUS; i <= VERY; i++) {
+        slowed kind = (slowed)i;
+        dem_limit l = find(t, make_slowed, &kind, names[i]);
+        // what is overdamped grows by 1 + e a step at e beyond the limit, to 1e4 in 3000 steps at 3e-3
+        double z = frequency() * l.measured, exact = i == LOCAL ? sqrt(2 / 1.7) : 0;
+        if (i == VISCOUS || i == VERY) {
+            double rate = i == VISCOUS ? 2 : 100;  // 2 z^2 + 2 rate z = 4
+            exact = 0.5 * (sqrt(rate * rate + 8) - rate);
+        }
+        if (exact > 0)
+            dem_expect(t, z / exact, 1, 4e-3, "", "%s: blows up at, over the exact limit", names[i]);
+        dem_expect_least(t, l.measured / l.predicted, 1 - 2e-3, "", "%s: blows up at, over the predicted limit",
+                         names[i]);
+    }
+}
+
+// ---- bonds
+
+// a rod of spheres that touch, each bonded to the next: stretch, shear, bending and twist
+static void make_bonds(dem_trial *t, const void *user)
+{
+    static dem_bond_def bond;
+    model *m = t->model;
+    const double damping = *(const double *)user;
+    bond = dem_bond_defaults();
+    bond.name = "rod";
+    bond.young = 1e7;
+    bond.gap = 1e-3 * RADIUS;
+    bond.damping = damping;
+    bond.contact = DEM_BOND_INSTEAD;
+    m->scene.bonds = &bond;
+    m->scene.bond_count = 1;
+    uint32_t shape = model_sphere(m, RADIUS);
+    for (int i = 0; i < 12; i++)
+        model_body(m, shape, v3(2 * RADIUS * i, 0, 0));
+}
+
+static void bonds(dem_trial *t)
+{
+    static const double damping[] = {0, 0.3, 1};
+    dem_limit_plot(t);
+    for (size_t i = 0; i < 3; i++) {
+        char name[40];
+        snprintf(name, sizeof name, "dashpots of ratio %g", damping[i]);
+        dem_limit l = find(t, make_bonds, &damping[i], name);
+        dem_expect_least(t, l.measured / l.predicted, 1 - 5e-4, "", "%s: blows up at, over the predicted limit", name);
+        dem_expect_most(t, l.measured / l.predicted, 2, "", "%s: blows up at, over the predicted limit", name);
+    }
+}
+
 // ---- Hertz
 
 static void make_hertz(dem_trial *t, const void *user)
@@ -273,6 +354,9 @@ const dem_case dem_stability_limits[] = {
     {"limit-duplicates", "clumps of many spheres in one place", "stiffness times their number", false, duplicates},
     {"limit-rotation", "contacts whose fastest motion is a rotation", "k r^2 / I", false, rotation},
     {"limit-damped", "dashpots from weak to ten times critical", "PHYSICS 2.1", false, damped},
+    {"limit-slowed", "global and local damping, and a fluid, with a contact", "PHYSICS 3; eigenvalues of the step",
+     false, slow},
+    {"limit-bonds", "a rod of bonded spheres", "PHYSICS 4: bound by bodies", false, bonds},
     {"limit-hertz", "Hertz, at the overlap there is", "tangent stiffness", false, hertz},
     {0},
 };
