@@ -100,7 +100,13 @@ void dem_lab_end(dem_lab *l)
 dem_status dem_lab_run(dem_lab *l, dem_error *error)
 {
     double begin = dem_clock();
+    dem_buffer text = {0};
     dem_status status = l->test->prepare ? l->test->prepare(l, error) : DEM_OK;
+    if (status == DEM_OK) {
+        l->test->write(l, &text);
+        status = dem_lab_start(l, &text, error);
+    }
+    dem_buffer_release(&text);
     if (status == DEM_OK)
         status = l->test->run(l, error);
     leave_world(l);

@@ -46,7 +46,7 @@ typedef struct dem_lab_test {
     size_t column_count;
     dem_status (*prepare)(dem_lab *lab, dem_error *error);  ///< NULL: nothing
     void (*write)(dem_lab *lab, dem_buffer *out);           ///< walls, bodies and all that is the test's own
-    dem_status (*run)(dem_lab *lab, dem_error *error);
+    dem_status (*run)(dem_lab *lab, dem_error *error);      ///< of the world that was written
 } dem_lab_test;
 
 extern const dem_lab_test dem_lab_pour, dem_lab_heap, dem_lab_triaxial, dem_lab_shear_box, dem_lab_drum;

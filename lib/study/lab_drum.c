@@ -87,26 +87,17 @@ static void write(dem_lab *l, dem_buffer *out)
 
 static dem_status run(dem_lab *l, dem_error *error)
 {
-    dem_buffer text = {0};
-    write(l, &text);
-    dem_status status = dem_lab_start(l, &text, error);
-    dem_buffer_release(&text);
     drum r = drum_of(l);
-    if (status == DEM_OK)
-        status = dem_lab_to(l, r.start, error);
-    for (int i = 0; i < ROWS && status == DEM_OK; i++) {
+    DEM_TRY(dem_lab_to(l, r.start, error));
+    for (int i = 0; i < ROWS; i++) {
         double time = r.start + (r.end - r.start) * (i + 1) / ROWS;
-        status = dem_lab_to(l, time, error);
-        if (status != DEM_OK)
-            break;
+        DEM_TRY(dem_lab_to(l, time, error));
         const dem_figures *f = dem_world_figures(l->world);
         // about +y the floor of the drum goes towards -x
         const double row[COLUMNS] = {r.spin * (time - r.start) * 180 / DEM_PI,
                                      atan2(-f->centre.x, -f->centre.z) * 180 / DEM_PI, f->coordination};
-        status = dem_lab_note(l, row, error);
+        DEM_TRY(dem_lab_note(l, row, error));
     }
-    if (status != DEM_OK)
-        return status;
     double mean = dem_lab_mean(l, ANGLE, ROWS / 2), swing = 0;
     for (int i = ROWS / 2; i < ROWS; i++)
         swing += pow(l->path[i * COLUMNS + ANGLE] - mean, 2);

@@ -135,15 +135,10 @@ static dem_status measure(dem_lab *l, const heap *h, dem_error *error)
 
 static dem_status run(dem_lab *l, dem_error *error)
 {
-    dem_buffer text = {0};
-    write(l, &text);
-    dem_status status = dem_lab_start(l, &text, error);
-    dem_buffer_release(&text);
     heap h = heap_of(l);
     dem_lab_rest rest = {0.02 * l->values[LAB_DIAMETER] / h.unit, 0, h.up + 5 * h.unit, h.end, 2 * h.unit};
-    if (status == DEM_OK)
-        status = dem_lab_settle(l, &rest, error);
-    return status == DEM_OK ? measure(l, &h, error) : status;
+    DEM_TRY(dem_lab_settle(l, &rest, error));
+    return measure(l, &h, error);
 }
 
 const dem_lab_test dem_lab_heap = {

@@ -63,17 +63,10 @@ static void write(dem_lab *l, dem_buffer *out)
 
 static dem_status run(dem_lab *l, dem_error *error)
 {
-    dem_buffer text = {0};
-    write(l, &text);
-    dem_status status = dem_lab_start(l, &text, error);
-    dem_buffer_release(&text);
     bed b = bed_of(l);
     double fall = sqrt(2 * b.rain / l->values[GRAVITY]), unit = sqrt(l->values[LAB_DIAMETER] / l->values[GRAVITY]);
     dem_lab_rest rest = {2e-3 * l->values[LAB_DIAMETER] / unit, -INFINITY, 1.5 * fall, end_of(l, &b), 2 * unit};
-    if (status == DEM_OK)
-        status = dem_lab_settle(l, &rest, error);
-    if (status != DEM_OK)
-        return status;
+    DEM_TRY(dem_lab_settle(l, &rest, error));
     size_t count;
     const dem_measure_view *middle = dem_world_measures(l->world, &count);
     dem_lab_found(l, "void_ratio", middle->void_ratio);

@@ -159,12 +159,6 @@ static void look(const dem_lab *l, const box *b, double row[COLUMNS])
 
 static dem_status run(dem_lab *l, dem_error *error)
 {
-    dem_buffer text = {0};
-    write(l, &text);
-    dem_status status = dem_lab_start(l, &text, error);
-    dem_buffer_release(&text);
-    if (status != DEM_OK)
-        return status;
     box b = box_of(l);
     double end = l->scene.time.end;
     dem_lab_found(l, "void_ratio", l->high[0] * l->high[1] * l->high[2] / dem_lab_solid(l) - 1);

@@ -155,14 +155,7 @@ static dem_status walk(dem_lab *l, dem_error *error)
 
 static dem_status run(dem_lab *l, dem_error *error)
 {
-    dem_buffer text = {0};
-    write(l, &text);
-    dem_status status = dem_lab_start(l, &text, error);
-    dem_buffer_release(&text);
-    if (status == DEM_OK)
-        status = dem_world_measure(l->world, error);
-    if (status != DEM_OK)
-        return status;
+    DEM_TRY(dem_world_measure(l->world, error));
     double volume = 1;
     for (int k = 0; k < 3; k++)
         volume *= l->high[k] - l->low[k];
