@@ -342,6 +342,25 @@ dem_status dem_lab_note(dem_lab *l, const double *row, dem_error *error)
     return DEM_OK;
 }
 
+dem_status dem_lab_go(dem_lab *l, const dem_lab_walk *walk, dem_error *error)
+{
+    enum { SAMPLES = 4 };
+    double begin = dem_lab_now(l), span = walk->end - begin;
+    for (size_t i = 0; i < walk->rows; i++) {
+        double row[DEM_LAB_COLUMNS] = {0}, now[DEM_LAB_COLUMNS] = {0};
+        for (size_t k = 0; k < SAMPLES; k++) {
+            DEM_TRY(dem_lab_to(l, begin + span * (double)(SAMPLES * i + k + 1) / (double)(SAMPLES * walk->rows), error));
+            walk->look(l, now);
+            for (size_t c = 0; c < l->test->column_count; c++)
+                row[c] += now[c] / SAMPLES;
+        }
+        if (walk->close)
+            walk->close(row);
+        DEM_TRY(dem_lab_note(l, row, error));
+    }
+    return DEM_OK;
+}
+
 static void put_sample(const dem_lab *l, dem_buffer *out)
 {
     dem_buffer_text(out, "shape,x,y,z,qw,qx,qy,qz,scale\n");

@@ -121,6 +121,15 @@ typedef struct dem_lab_rest {
 dem_status dem_lab_settle(dem_lab *lab, const dem_lab_rest *rest, dem_error *error);
 /// Takes the bodies as they are now as the sample, at rest.
 dem_status dem_lab_keep(dem_lab *lab, dem_error *error);
+/// Goes on to `end` [s] in `rows` even parts; each becomes a row of the path, the mean of what `look` says of four times
+/// in it. `close` (may be NULL) then sets the columns that are made of the others.
+typedef struct dem_lab_walk {
+    double end;
+    size_t rows;
+    void (*look)(const dem_lab *lab, double *row);
+    void (*close)(double *row);
+} dem_lab_walk;
+dem_status dem_lab_go(dem_lab *lab, const dem_lab_walk *walk, dem_error *error);
 /// A row for the path.
 dem_status dem_lab_note(dem_lab *lab, const double *row, dem_error *error);
 double dem_lab_now(const dem_lab *lab);

@@ -27,7 +27,7 @@ static const dem_lab_name columns[] = {
     {"rise", "d", "rise of the top plate"},
 };
 enum { SHIFT, SHEAR, NORMAL, RATIO, RISE, COLUMNS };
-enum { ROWS = 150, SAMPLES = 4 };
+enum { ROWS = 150 };
 static const double LOOSE = 0.35, DENSE = 0.62;  // solid fraction where the sample begins, about as it ends
 
 typedef struct box {
@@ -144,33 +144,29 @@ static void write(dem_lab *l, dem_buffer *out)
 
 enum { UPPER_LEFT = 4, TOP = 7 };
 
-static void look(const dem_lab *l, const box *b, double row[COLUMNS])
+static void look(const dem_lab *l, double *row)
 {
+    box b = box_of(l);
     size_t count;
     const dem_wall_view *w = dem_world_walls(l->world, &count);
-    double d = l->values[LAB_DIAMETER], area = b->length * b->depth, shear = 0;
+    double d = l->values[LAB_DIAMETER], area = b.length * b.depth, shear = 0;
     for (int i = UPPER_LEFT; i <= TOP; i++)
         shear += w[i].force.x;
-    row[SHIFT] += w[0].position.x / d / SAMPLES;
-    row[SHEAR] += shear / area / SAMPLES;
-    row[NORMAL] += w[TOP].force.z / area / SAMPLES;
-    row[RISE] += w[TOP].position.z / d / SAMPLES;
+    row[SHIFT] = w[0].position.x / d;
+    row[SHEAR] = shear / area;
+    row[NORMAL] = w[TOP].force.z / area;
+    row[RISE] = w[TOP].position.z / d;
+}
+
+static void close(double *row)
+{
+    row[RATIO] = row[SHEAR] / row[NORMAL];
 }
 
 static dem_status run(dem_lab *l, dem_error *error)
 {
-    box b = box_of(l);
-    double end = l->scene.time.end;
     dem_lab_found(l, "void_ratio", l->high[0] * l->high[1] * l->high[2] / dem_lab_solid(l) - 1);
-    for (int i = 0; i < ROWS; i++) {
-        double row[COLUMNS] = {0};
-        for (int k = 0; k < SAMPLES; k++) {
-            DEM_TRY(dem_lab_to(l, end * (SAMPLES * i + k + 1) / (SAMPLES * ROWS), error));
-            look(l, &b, row);
-        }
-        row[RATIO] = row[SHEAR] / row[NORMAL];
-        DEM_TRY(dem_lab_note(l, row, error));
-    }
+    DEM_TRY(dem_lab_go(l, &(dem_lab_walk){l->scene.time.end, ROWS, look, close}, error));
     size_t at;
     dem_lab_found(l, "peak_angle", atan(dem_lab_peak(l, RATIO, ROWS / 30, &at)) * 180 / DEM_PI);
     dem_lab_found(l, "peak_displacement", l->path[at * COLUMNS + SHIFT]);

@@ -32,7 +32,7 @@ static const dem_lab_name columns[] = {
     {"coordination", "-", "coordination"},
 };
 enum { AXIAL_STRAIN, AXIAL, LATERAL, ANGLE, RATIO, VOLUME, VOID_RATIO, COORDINATION, COLUMNS };
-enum { ROWS = 150, SAMPLES = 4 };  // along the path, and of each row
+enum { ROWS = 150 };  // along the path
 static const double LOOSE = 0.35;  // solid fraction where the sample begins
 
 // of stress, that a grain needs for a diameter [s]
@@ -112,7 +112,7 @@ static void write(dem_lab *l, dem_buffer *out)
 }
 
 // walls: bottom, top, left, right, front, back
-static void look(const dem_lab *l, double row[COLUMNS])
+static void look(const dem_lab *l, double *row)
 {
     size_t count;
     const dem_wall_view *w = dem_world_walls(l->world, &count);
@@ -126,31 +126,27 @@ static void look(const dem_lab *l, double row[COLUMNS])
     double lateral = (w[3].force.x - w[2].force.x) / 4 / (size[1] * size[2]) +
                      (w[5].force.y - w[4].force.y) / 4 / (size[0] * size[2]);
     double volume = size[0] * size[1] * size[2], before = start[0] * start[1] * start[2];
-    row[AXIAL_STRAIN] += (1 - size[2] / start[2]) / SAMPLES;
-    row[AXIAL] += axial / SAMPLES;
-    row[LATERAL] += lateral / SAMPLES;
-    row[VOLUME] += (1 - volume / before) / SAMPLES;
-    row[VOID_RATIO] += (volume / dem_lab_solid(l) - 1) / SAMPLES;
-    row[COORDINATION] += dem_world_figures(l->world)->coordination / SAMPLES;
+    row[AXIAL_STRAIN] = 1 - size[2] / start[2];
+    row[AXIAL] = axial;
+    row[LATERAL] = lateral;
+    row[VOLUME] = 1 - volume / before;
+    row[VOID_RATIO] = volume / dem_lab_solid(l) - 1;
+    row[COORDINATION] = dem_world_figures(l->world)->coordination;
 }
 
-static dem_status walk(dem_lab *l, dem_error *error)
+static void close(double *row)
 {
-    double end = l->scene.time.end, off = 0;
-    for (int i = 0; i < ROWS; i++) {
-        double row[COLUMNS] = {0};
-        for (int k = 0; k < SAMPLES; k++) {
-            DEM_TRY(dem_lab_to(l, end * (SAMPLES * i + k + 1) / (SAMPLES * ROWS), error));
-            look(l, row);
-        }
-        double sum = row[AXIAL] + row[LATERAL], q = row[AXIAL] - row[LATERAL];
-        row[ANGLE] = sum > 0 ? asin(larger(-1, smaller(1, q / sum))) * 180 / DEM_PI : NAN;
-        row[RATIO] = 3 * q / (row[AXIAL] + 2 * row[LATERAL]);
-        off += pow(row[LATERAL] / l->values[CONFINEMENT] - 1, 2) / ROWS;
-        DEM_TRY(dem_lab_note(l, row, error));
-    }
-    dem_lab_found(l, "lateral_error", sqrt(off));
-    return DEM_OK;
+    double sum = row[AXIAL] + row[LATERAL], q = row[AXIAL] - row[LATERAL];
+    row[ANGLE] = sum > 0 ? asin(larger(-1, smaller(1, q / sum))) * 180 / DEM_PI : NAN;
+    row[RATIO] = 3 * q / (row[AXIAL] + 2 * row[LATERAL]);
+}
+
+static double lateral_error(const dem_lab *l)
+{
+    double off = 0;
+    for (size_t i = 0; i < l->rows; i++)
+        off += pow(l->path[i * COLUMNS + LATERAL] / l->values[CONFINEMENT] - 1, 2) / ROWS;
+    return sqrt(off);
 }
 
 static dem_status run(dem_lab *l, dem_error *error)
@@ -161,7 +157,8 @@ static dem_status run(dem_lab *l, dem_error *error)
         volume *= l->high[k] - l->low[k];
     dem_lab_found(l, "void_ratio", volume / dem_lab_solid(l) - 1);
     dem_lab_found(l, "coordination", dem_world_figures(l->world)->coordination);
-    DEM_TRY(walk(l, error));
+    DEM_TRY(dem_lab_go(l, &(dem_lab_walk){l->scene.time.end, ROWS, look, close}, error));
+    dem_lab_found(l, "lateral_error", lateral_error(l));
     size_t at, width = (size_t)ceil(0.01 / l->values[STRAIN] * ROWS);
     dem_lab_found(l, "peak_angle", dem_lab_peak(l, ANGLE, width, &at));
     dem_lab_found(l, "peak_strain", l->path[at * COLUMNS + AXIAL_STRAIN]);
