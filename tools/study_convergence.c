@@ -3,10 +3,10 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "base/file.h"
 #include "base/memory.h"
 #include "sim/schemes.h"
 #include "study/model.h"
+#include "study_output.h"
 
 typedef struct arguments {
     cli_common common;
@@ -161,31 +161,20 @@ static int put_list(const cli_tool *tool)
 
 // ---- the study
 
-static dem_status write_file(const char *folder, const char *name, dem_buffer *text, dem_error *error)
+static int write_files(cli_session *session, const arguments *a, const dem_convergence *c, const char *scene)
 {
-    char *path = dem_path_join(folder, "%s", name);
-    dem_status status = path ? dem_file_write_buffer(path, text, error) : dem_fail_memory(error);
-    if (!path)
-        dem_buffer_release(text);
-    free(path);
-    return status;
-}
-
-static dem_status write_files(const arguments *a, const dem_convergence *c, const char *scene, dem_error *error)
-{
-    dem_buffer errors = {0}, orders = {0}, page = {0};
-    convergence_csv(&errors, c);
-    convergence_orders_csv(&orders, c);
-    if (!convergence_page(&page, c, scene))
-        page.failed = true;
-    dem_status status = write_file(a->output, "errors.csv", &errors, error);
-    if (status == DEM_OK)
-        status = write_file(a->output, "orders.csv", &orders, error);
-    else
-        dem_buffer_release(&orders);
-    if (status == DEM_OK)
-        return write_file(a->output, "convergence.html", &page, error);
-    dem_buffer_release(&page);
+    static const char *const names[] = {"errors.csv", "orders.csv", "convergence.html"};
+    dem_buffer texts[3] = {{0}};
+    int status = 0;
+    convergence_csv(&texts[0], c);
+    convergence_orders_csv(&texts[1], c);
+    if (!convergence_page(&texts[2], c, scene))
+        texts[2].failed = true;
+    for (int i = 0; i < 3; i++)
+        if (status == 0)
+            status = study_write(session, a->output, names[i], &texts[i]);
+        else
+            dem_buffer_release(&texts[i]);
     return status;
 }
 
@@ -212,15 +201,13 @@ static int run(const cli_tool *tool, const arguments *a, work *w, cli_session *s
                                .only = a->cell < 0 ? DEM_ALL_CELLS : (size_t)a->cell};
     if (dem_convergence_run(&ctx, &def, &c, &error) != DEM_OK)
         return cli_session_error(session, &error);
-    int status = 0;
+    int status = c.undone ? 0 : write_files(session, a, &c, w->name);
     if (c.undone)
         dem_buffer_print(&text, "%zu of %zu cells are there; the pages come with the last one\n", c.cells - c.undone,
                          c.cells);
-    else if (write_files(a, &c, w->name, &error) != DEM_OK)
-        status = cli_session_error(session, &error);
-    else if (a->common.json)
+    else if (status == 0 && a->common.json)
         convergence_json(&text, &c, w->name, session);
-    else
+    else if (status == 0)
         convergence_text(&text, &c, w->name);
     if (status == 0 && !c.undone && !isnan(a->error) && c.best == SIZE_MAX)
         status = DEM_FAILED;

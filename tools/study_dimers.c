@@ -6,7 +6,7 @@
 #include "out/page.h"
 #include "out/plot.h"
 #include "study/dimers.h"
-#include "study/shape_study.h"
+#include "study/statistics.h"
 #include "study_output.h"
 
 enum { MOST_ASPECTS = 64, FINDINGS = 3 };

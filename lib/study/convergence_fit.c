@@ -4,6 +4,7 @@
 
 #include "sim/schemes.h"
 #include "study/convergence.h"
+#include "study/statistics.h"
 
 // log2 of the error: 12 % off the line
 static const double OFF_LINE = 0.17;
@@ -54,14 +55,7 @@ dem_order dem_order_fit(const double *steps, const dem_error_found *errors, size
 
 double dem_confidence(double a, double b, size_t count)
 {
-    // Student's t, by its expansion about the normal distribution: to 1 % from 4 degrees of freedom on
-    const double z = 1.959963985, z3 = z * z * z, z5 = z3 * z * z, z7 = z5 * z * z;
-    double n = 2 * ((double)count - 1);
-    if (!(n > 0))
-        return INFINITY;
-    double t = z + (z3 + z) / (4 * n) + (5 * z5 + 16 * z3 + 3 * z) / (96 * n * n) +
-               (3 * z7 + 19 * z5 + 17 * z3 - 15 * z) / (384 * n * n * n);
-    return t * sqrt((a * a + b * b) / (double)count);
+    return count > 1 ? dem_student(2 * (count - 1)) * sqrt((a * a + b * b) / (double)count) : INFINITY;
 }
 
 // of one method: the coarsest step that is good enough; one that is good by chance is not

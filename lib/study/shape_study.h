@@ -5,6 +5,7 @@
 
 #include "study/cells.h"
 #include "study/lab.h"
+#include "study/statistics.h"
 
 typedef struct dem_variant {
     char name[64];
@@ -38,15 +39,7 @@ dem_shape_cell dem_shape_cell_at(const dem_shape_study *study, size_t cell);
 /// `results` [dem_shape_cells], to be released; see dem_cells_run.
 dem_status dem_shape_run(const dem_ctx *ctx, const dem_shape_study *study, dem_cell_result *results, dem_error *error);
 
-/// Of a figure over the seeds.
-typedef struct dem_mean {
-    size_t count;
-    double mean;
-    double deviation;  ///< standard, of one seed; NAN with fewer than two
-    double error;      ///< half of the interval that holds the mean with 95 % (Student); NAN with fewer than two
-} dem_mean;
-dem_mean dem_mean_of(const double *values, size_t count);
-/// `name`: a figure of the test, or "seconds".
+/// Of a figure over the seeds. `name`: a figure of the test, or "seconds".
 dem_mean dem_shape_mean(const dem_shape_study *study, const dem_cell_result *results, size_t variant, size_t test,
                         const char *name);
 
