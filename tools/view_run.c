@@ -82,8 +82,9 @@ static dem_field_source source_of(const view_run *run)
 // walls by how deep they are worn
 static dem_status choose_wear(view_run *run, dem_error *error)
 {
-    const dem_results *r = &run->results;
+    dem_results *r = &run->results;
     bool worn = false;
+    DEM_TRY(dem_results_wear(r, error));
     for (size_t i = 0; i < run->options.wall_count; i++)
         worn |= r->walls[i].wear != NULL;
     if (!worn)

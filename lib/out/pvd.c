@@ -146,8 +146,10 @@ dem_status dem_pvd_add(dem_pvd *index, double time, const char *file, const char
 
 const dem_pvd_entry *dem_pvd_nearest(const dem_pvd *index, double time)
 {
-    const dem_pvd_entry *best = index->count ? &index->entries[index->count - 1] : NULL;
-    for (size_t i = 0; i < index->count && !isnan(time); i++)
+    if (!index->count)
+        return NULL;
+    const dem_pvd_entry *best = &index->entries[isnan(time) ? index->count - 1 : 0];
+    for (size_t i = 1; i < index->count && !isnan(time); i++)
         if (fabs(index->entries[i].time - time) < fabs(best->time - time))
             best = &index->entries[i];
     return best;

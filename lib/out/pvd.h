@@ -31,7 +31,7 @@ dem_status dem_pvd_add(dem_pvd *index, double time, const char *file, const char
 dem_status dem_pvd_remove(const char *directory, const char *folder, const char *prefix, size_t first,
                           dem_error *error);
 
-/// The entry whose time is nearest; the last one for a time that is NAN; NULL: there is none.
+/// The entry whose time is nearest, the first of such; the last one for a time that is NAN; NULL: there is none.
 const dem_pvd_entry *dem_pvd_nearest(const dem_pvd *index, double time);
 
 void dem_pvd_release(dem_pvd *index);

@@ -147,8 +147,7 @@ static dem_status take_wear(dem_results *r, const dem_vtp *v, dem_error *error)
     return DEM_OK;
 }
 
-// from the file of walls whose time is nearest; a run without frames has none
-static dem_status read_wear(dem_results *r, dem_error *error)
+dem_status dem_results_wear(dem_results *r, dem_error *error)
 {
     dem_pvd index;
     dem_vtp_file file;
@@ -172,7 +171,6 @@ static dem_status read_wear(dem_results *r, dem_error *error)
 
 static dem_status place_walls(dem_results *r, dem_error *error)
 {
-    bool wears = false;
     release_walls(r);
     r->walls = dem_alloc_zero(r->scene.wall_count, sizeof *r->walls);
     r->worn = dem_alloc_zero(r->scene.wall_count, sizeof *r->worn);
@@ -184,9 +182,8 @@ static dem_status place_walls(dem_results *r, dem_error *error)
         dem_wall_motion motion = dem_wall_motion_of(w);
         dem_wall_moment now = dem_wall_motion_at(&motion, time);
         r->walls[i].position = dem_wall_pose(&motion, &now, shift_of(r, i), &r->walls[i].orientation);
-        wears |= w->wear.law != DEM_WEAR_NONE;
     }
-    return wears ? read_wear(r, error) : DEM_OK;
+    return DEM_OK;
 }
 
 static dem_status fill_view(dem_results *r, const dem_body_def *defs, size_t n, dem_error *error)
@@ -312,13 +309,11 @@ dem_status dem_results_frame(dem_results *r, size_t index, dem_error *error)
 dem_status dem_results_at(const dem_results *r, double time, size_t *index, dem_error *error)
 {
     const dem_pvd_entry *e = r->index.entries;
-    size_t n = r->index.count, best = 0;
+    size_t n = r->index.count;
     if (n == 0)
         return dem_fail_at(error, DEM_BAD_INPUT, r->directory, 0,
                            "has no frames; give the scene an interval of frames (output.frames)");
-    for (size_t i = 1; i < n; i++)
-        if (fabs(e[i].time - time) < fabs(e[best].time - time))
-            best = i;
+    size_t best = (size_t)(dem_pvd_nearest(&r->index, time) - e);
     double gap = n == 1 ? 0 : best > 0 ? e[best].time - e[best - 1].time : e[1].time - e[0].time;
     if (!(fabs(e[best].time - time) <= 0.5001 * gap + 1e-9 * fabs(time))) {
         char asked[40], first[40], last[40];

@@ -16,8 +16,8 @@ typedef struct dem_results {
     double end;            ///< time of the last state [s]; NAN: not known
     dem_pvd index;         ///< frames and their times, ascending
     dem_body_view bodies;  ///< of what was read last; a column that is not known is NULL
-    dem_wall_view *walls;  ///< poses of the scene's walls at that time, and what is worn off those that wear
-    double **worn;         ///< the arrays of that
+    dem_wall_view *walls;  ///< poses of the scene's walls at that time
+    double **worn;         ///< arrays of their wear
     double time;           ///< of the bodies [s]; NAN: not known
     dem_vtp_file frame;    ///< what was read, where that is a frame
 } dem_results;
@@ -34,6 +34,10 @@ dem_status dem_results_frame_file(dem_results *results, const char *path, dem_er
 
 /// Those of the last state: the last frame where it is of that time, else final.csv.
 dem_status dem_results_last(dem_results *results, dem_error *error);
+
+/// What was worn off the walls by then, into their views: from the file of walls whose time is nearest. A run without
+/// frames has none.
+dem_status dem_results_wear(dem_results *results, dem_error *error);
 
 /// dem_results_open and dem_results_last.
 dem_status dem_results_read(const dem_ctx *ctx, const char *directory, dem_results *results, dem_error *error);

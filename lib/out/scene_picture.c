@@ -244,18 +244,12 @@ static void include_depths(const model *m, double *low, double *high)
         }
 }
 
-// solid and in the colours of the range, which is known by now
+// once the range is known
 static void colour_walls(model *m)
 {
-    for (size_t i = 0; i < m->options->wall_count; i++) {
+    for (size_t i = 0; i < m->options->wall_count; i++)
         for (size_t t = 0; m->depths[i] && t < m->walls[i].triangle_count; t++)
             m->wall_colours[i][t] = colour_of_value(m, m->depths[i][t]);
-        for (size_t k = m->shape_count; m->depths[i] && k < m->shape_count + m->options->wall_count; k++)
-            if (m->shapes[k].mesh == &m->walls[i]) {
-                m->shapes[k].part_colours = m->wall_colours[i];
-                m->bodies[m->body_count + k - m->shape_count].clear = 0;
-            }
-    }
 }
 
 // those that are the ground come last, so that they can be counted for the camera and then left out
@@ -273,12 +267,13 @@ static dem_status place_walls(model *m, dem_box bodies, dem_error *error)
         bool floor = is_ground(m, i, &height) && !m->depths[i];
         m->ground = floor ? fmin(m->ground, height) : m->ground;
         size_t place = floor ? o->wall_count - ++floors : m->glass++;
-        m->shapes[m->shape_count + place].mesh = &m->walls[i];
+        m->shapes[m->shape_count + place] =
+            (dem_render_shape){.mesh = &m->walls[i], .part_colours = m->wall_colours[i]};
         m->bodies[m->body_count + place] = (dem_render_body){.shape = (uint32_t)(m->shape_count + place),
                                                              .orientation = {1, 0, 0, 0},
                                                              .scale = 1,
                                                              .colour = GLASS,
-                                                             .clear = GLASS_CLEAR};
+                                                             .clear = m->depths[i] ? 0 : GLASS_CLEAR};
     }
     return DEM_OK;
 }
