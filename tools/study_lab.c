@@ -19,6 +19,14 @@ typedef struct arguments {
     cli_texts values, outputs;
 } arguments;
 
+// what is told about a test
+typedef struct lab_settings {
+    const dem_lab_test *test;
+    dem_lab_grain grain;
+    dem_clump *clump;  // owned
+    double values[DEM_LAB_PARAMS];
+} lab_settings;
+
 static const char contacts_choices[] = "sum|mean|merge|soft";
 
 // ---- what is asked
@@ -70,7 +78,7 @@ int lab_read_values(const cli_tool *tool, const dem_lab_test *test, const cli_te
     return status;
 }
 
-void lab_put_list(dem_buffer *out)
+static void put_list(dem_buffer *out)
 {
     const dem_lab_test *test;
     const dem_parameter *p;
@@ -304,7 +312,7 @@ static int begin(const cli_tool *tool, arguments *a, int argc, char **argv,
     if (cli_parse(tool, argc, argv, &words, &status) == CLI_GO) {
         if (a->list) {
             dem_buffer text = {0};
-            lab_put_list(&text);
+            put_list(&text);
             status = cli_print(tool, &text);
         } else if ((status = choose(tool, a, &words, &s)) == 0 &&
                    (status = study_check_outputs(tool, &a->outputs, false)) == 0)

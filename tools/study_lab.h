@@ -9,19 +9,9 @@
 int study_scene(int argc, char **argv);
 int study_test(int argc, char **argv);
 
-/// What is told about a test on the command line.
-typedef struct lab_settings {
-    const dem_lab_test *test;
-    dem_lab_grain grain;
-    dem_clump *clump;  ///< owned
-    double values[DEM_LAB_PARAMS];
-} lab_settings;
-
 /// Sets the values that "name=value" texts give of a test, others NAN; unknown names are an error unless
 /// `of_any_test` has them. 0, or 2 having said what is wrong.
 int lab_read_values(const cli_tool *tool, const dem_lab_test *test, const cli_texts *texts, bool of_any_test,
                     double *values);
-/// Appends the tests with their parameters.
-void lab_put_list(dem_buffer *out);
 
 #endif

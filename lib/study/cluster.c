@@ -9,8 +9,8 @@
 #include "math/quat.h"
 #include "math/vec.h"
 
-dem_status dem_cluster(const char *name, const dem_ball *balls, size_t count, double density, dem_clump **clump,
-                       dem_error *error)
+// a clump with mass, centre and moments of the union of its balls, of unit density
+static dem_status make(const char *name, const dem_ball *balls, size_t count, dem_clump **clump, dem_error *error)
 {
     dem_union whole;
     dem_ball *own = dem_alloc(count, sizeof *own);
@@ -22,8 +22,8 @@ dem_status dem_cluster(const char *name, const dem_ball *balls, size_t count, do
         for (size_t i = 0; i < count; i++)
             own[i] = (dem_ball){quat_unrotate(s->axes, v3_sub(balls[i].centre, s->centre)), balls[i].radius};
         dem_clump_def def = {.name = name,
-                             .density = density,
-                             .mass = density * s->volume,
+                             .density = 1,
+                             .mass = s->volume,
                              .volume = s->volume,
                              .mass_from = DEM_MASS_FROM_UNION,
                              .position = s->centre,
@@ -34,7 +34,7 @@ dem_status dem_cluster(const char *name, const dem_ball *balls, size_t count, do
                              .parameters = "{}",
                              .seconds = NAN};
         for (int k = 0; k < 3; k++)
-            def.inertia[k] = def.union_inertia[k] = density * s->principal[k];
+            def.inertia[k] = def.union_inertia[k] = s->principal[k];
         status = dem_clump_create(&def, clump, error);
     }
     free(own);
@@ -54,5 +54,5 @@ dem_status dem_cluster_regular(size_t count, double apart, dem_clump **clump, de
     for (size_t i = 0; i < count; i++)
         balls[i] = (dem_ball){v3_scale(corners[i], apart / sqrt(8)), 0.5};
     snprintf(name, sizeof name, "cluster of %zu", count);
-    return dem_cluster(name, balls, count, 1, clump, error);
+    return make(name, balls, count, clump, error);
 }

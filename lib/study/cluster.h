@@ -4,10 +4,6 @@
 
 #include "dem/clump.h"
 
-/// A clump with mass, centre and moments of the union of its balls.
-dem_status dem_cluster(const char *name, const dem_ball *balls, size_t count, double density, dem_clump **clump,
-                       dem_error *error);
-
 /// 1 to 4 spheres of diameter 1 m about a point, each `apart` [m] from every other (dimer, triangle, tetrahedron), of
 /// unit density. The aspect ratio of a dimer is 1 + apart.
 enum { DEM_CLUSTER_MOST = 4 };

@@ -232,7 +232,7 @@ void dem_lab_put_head(dem_lab *l, dem_buffer *out, double pressure, double frict
     dem_buffer_text(out, ", \"material\": \"grain\" } },\n");
 }
 
-void dem_lab_put_fill(dem_lab *l, dem_buffer *out, size_t count, dem_box box, const char *more)
+static void put_fill(const dem_lab *l, dem_buffer *out, size_t count, dem_box box)
 {
     double d = l->values[LAB_DIAMETER], s = l->values[LAB_SPREAD];
     dem_buffer_text(out, "    { \"fill\": { \"mix\": [ { \"shape\": \"grain\", \"size\": ");
@@ -242,7 +242,7 @@ void dem_lab_put_fill(dem_lab *l, dem_buffer *out, size_t count, dem_box box, co
         dem_lab_put(out, "{ \"law\": \"fixed\", \"value\": @ } } ],\n", d);
     dem_lab_put(out, "      \"box\": [[@, @, @], [@, @, @]],", box.low.x, box.low.y, box.low.z, box.high.x, box.high.y,
                 box.high.z);
-    dem_buffer_print(out, " \"count\": %zu, \"seed\": %llu }%s }", count, (unsigned long long)l->seed, more);
+    dem_buffer_print(out, " \"count\": %zu, \"seed\": %llu } }", count, (unsigned long long)l->seed);
 }
 
 void dem_lab_put_bodies(dem_lab *l, dem_buffer *out, size_t count, dem_box box)
@@ -251,7 +251,7 @@ void dem_lab_put_bodies(dem_lab *l, dem_buffer *out, size_t count, dem_box box)
         dem_buffer_print(out, "  \"bodies\": [ { \"file\": \"%s\" } ],\n", l->sample_file);
     } else if (!l->sample) {
         dem_buffer_text(out, "  \"bodies\": [\n");
-        dem_lab_put_fill(l, out, count, box, "");
+        put_fill(l, out, count, box);
         dem_buffer_text(out, " ],\n");
     }
 }
@@ -278,7 +278,7 @@ dem_status dem_lab_start(dem_lab *l, const dem_buffer *text, dem_error *error)
     return dem_world_create(l->ctx, &l->scene, &l->world, error);
 }
 
-double dem_lab_now(const dem_lab *l)
+static double now(const dem_lab *l)
 {
     return dem_world_time(l->world);
 }
@@ -286,11 +286,11 @@ double dem_lab_now(const dem_lab *l)
 dem_status dem_lab_to(dem_lab *l, double time, dem_error *error)
 {
     enum { UNASKED = 2000 };
-    for (double left; (left = time - dem_lab_now(l)) > 0;) {
+    for (double left; (left = time - now(l)) > 0;) {
         double steps = ceil(left / dem_world_step_size(l->world) - 1e-6);
         if (steps < 1)
             break;
-        if (dem_progress(l->ctx, l->test->name, dem_lab_now(l) / l->scene.time.end))
+        if (dem_progress(l->ctx, l->test->name, now(l) / l->scene.time.end))
             return dem_fail(error, DEM_INTERRUPTED, "interrupted");
         DEM_TRY(dem_world_step(l->world, steps < UNASKED ? (uint64_t)steps : UNASKED, error));
     }
@@ -313,8 +313,8 @@ static double mean_speed(const dem_lab *l, double floor)
 dem_status dem_lab_settle(dem_lab *l, const dem_lab_rest *rest, dem_error *error)
 {
     DEM_TRY(dem_lab_to(l, rest->from, error));
-    while (mean_speed(l, rest->floor) > rest->speed && dem_lab_now(l) < rest->until)
-        DEM_TRY(dem_lab_to(l, dem_lab_now(l) + rest->every, error));
+    while (mean_speed(l, rest->floor) > rest->speed && now(l) < rest->until)
+        DEM_TRY(dem_lab_to(l, now(l) + rest->every, error));
     return DEM_OK;
 }
 
@@ -345,14 +345,14 @@ dem_status dem_lab_note(dem_lab *l, const double *row, dem_error *error)
 dem_status dem_lab_go(dem_lab *l, const dem_lab_walk *walk, dem_error *error)
 {
     enum { SAMPLES = 4 };
-    double begin = dem_lab_now(l), span = walk->end - begin;
+    double begin = now(l), span = walk->end - begin;
     for (size_t i = 0; i < walk->rows; i++) {
-        double row[DEM_LAB_COLUMNS] = {0}, now[DEM_LAB_COLUMNS] = {0};
+        double row[DEM_LAB_COLUMNS] = {0}, sample[DEM_LAB_COLUMNS] = {0};
         for (size_t k = 0; k < SAMPLES; k++) {
             DEM_TRY(dem_lab_to(l, begin + span * (double)(SAMPLES * i + k + 1) / (double)(SAMPLES * walk->rows), error));
-            walk->look(l, now);
+            walk->look(l, sample);
             for (size_t c = 0; c < l->test->column_count; c++)
-                row[c] += now[c] / SAMPLES;
+                row[c] += sample[c] / SAMPLES;
         }
         if (walk->close)
             walk->close(row);

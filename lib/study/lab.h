@@ -105,8 +105,6 @@ void dem_lab_put(dem_buffer *out, const char *format, ...);
 /// Head, materials "grain", "rough" and "smooth", contacts, the shape. `pressure` [Pa] is the load that makes the
 /// overlap.
 void dem_lab_put_head(dem_lab *lab, dem_buffer *out, double pressure, double friction, double rough);
-/// An entry of "bodies": so many in a box, `more`: members behind the seed, or "".
-void dem_lab_put_fill(dem_lab *lab, dem_buffer *out, size_t count, dem_box box, const char *more);
 /// "bodies": the sample, or so many in a box.
 void dem_lab_put_bodies(dem_lab *lab, dem_buffer *out, size_t count, dem_box box);
 /// The scene of a text becomes the world; of the one before, the sample stays.
@@ -132,7 +130,6 @@ typedef struct dem_lab_walk {
 dem_status dem_lab_go(dem_lab *lab, const dem_lab_walk *walk, dem_error *error);
 /// A row for the path.
 dem_status dem_lab_note(dem_lab *lab, const double *row, dem_error *error);
-double dem_lab_now(const dem_lab *lab);
 void dem_lab_found(dem_lab *lab, const char *name, double value);
 /// The largest mean of so many rows of the path one behind the other, and the row in their middle.
 double dem_lab_peak(const dem_lab *lab, size_t column, size_t width, size_t *at);
