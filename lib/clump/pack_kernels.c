@@ -40,8 +40,43 @@ static bool any_above(const float *restrict a, float limit)
 }
 
 // Which balls can be nearest or second nearest to a sample of a block of radius R about b: with t_i the distance of b
-// to ball i, those with t_i <= (second smallest t) + 2 R. They are put into buckets by t, nearest first: few of them
-// are looked at before no other one can be nearer.
+// to ball i, those with t_i <= (second smallest t) + 2 R.
+static float near_limit(const dem_ball_columns *balls, const float smallest[2], const dem_block_bound *bound,
+                        float slack)
+{
+    return (balls->count > 1 ? smallest[1] : smallest[0]) + 2 * bound->radius + slack;
+}
+
+static uint32_t lanes_within(const float *restrict distance, float limit)
+{
+    uint32_t within = 0;
+    for (int l = 0; l < DEM_LANES; l++)
+        within |= (uint32_t)(distance[l] <= limit) << l;
+    return within;
+}
+
+static void gather_near(const dem_ball_columns *balls, const dem_block_bound *bound, float slack,
+                        const dem_near_work *work, dem_ball_columns *some, uint32_t *restrict ids)
+{
+    float smallest[2], *restrict distance = work->distance;
+    size_t count = 0;
+    distances(balls, bound, distance, smallest);
+    float limit = near_limit(balls, smallest, bound, slack);
+    for (size_t i = 0; i < balls->padded; i += DEM_LANES)
+        for (uint32_t within = lanes_within(distance + i, limit); within; within &= within - 1)
+            ids[count++] = (uint32_t)i + (uint32_t)__builtin_ctz(within);
+    some->count = count;
+    some->padded = (count + DEM_LANES - 1) / DEM_LANES * DEM_LANES;
+    for (size_t k = 0; k < some->padded; k++) {
+        bool is = k < count;
+        some->x[k] = is ? balls->x[ids[k]] : nowhere;
+        some->y[k] = is ? balls->y[ids[k]] : nowhere;
+        some->z[k] = is ? balls->z[ids[k]] : nowhere;
+        some->r[k] = is ? balls->r[ids[k]] : 0;
+    }
+}
+
+// Those balls are put into buckets by t, nearest first: few of them are looked at before no other one can be nearer.
 static size_t list_near(const dem_ball_columns *balls, const dem_block_bound *bound, float slack,
                         const dem_near_work *work, uint32_t *restrict list, float *restrict least)
 {
@@ -50,20 +85,16 @@ static size_t list_near(const dem_ball_columns *balls, const dem_block_bound *bo
     uint32_t *restrict found = work->found, *restrict bucket = work->bucket, begin[BUCKETS + 1] = {0};
     size_t count = 0;
     distances(balls, bound, distance, smallest);
-    float second = balls->count > 1 ? smallest[1] : smallest[0], limit = second + 2 * bound->radius + slack;
+    float limit = near_limit(balls, smallest, bound, slack);
     float per_bucket = BUCKETS / (limit - smallest[0]);
-    for (size_t i = 0; i < balls->padded; i += DEM_LANES) {
-        uint32_t within = 0;
-        for (int l = 0; l < DEM_LANES; l++)
-            within |= (uint32_t)(distance[i + (size_t)l] <= limit) << l;
-        for (; within; within &= within - 1) {
+    for (size_t i = 0; i < balls->padded; i += DEM_LANES)
+        for (uint32_t within = lanes_within(distance + i, limit); within; within &= within - 1) {
             uint32_t ball = (uint32_t)i + (uint32_t)__builtin_ctz(within);
             int32_t k = (int32_t)((distance[ball] - smallest[0]) * per_bucket);
             bucket[count] = k < BUCKETS ? (uint32_t)k : BUCKETS - 1;
             begin[bucket[count] + 1]++;
             found[count++] = ball;
         }
-    }
     for (int k = 0; k < BUCKETS; k++)
         begin[k + 1] += begin[k];
     for (size_t k = 0; k < count; k++) {
@@ -364,6 +395,7 @@ static int64_t lattice_gain(const dem_lattice *lattice, dem_ball ball, uint64_t 
 }
 
 const dem_pack_kernels DEM_LEVEL_OF(dem_pack_kernels) = {
+    .gather_near = gather_near,
     .list_near = list_near,
     .nearest = nearest,
     .nearest_two = nearest_two,
