@@ -70,12 +70,42 @@ static void a_decimated_surface_is_closed_and_near(void **state)
     dem_mesh_free(&grain);
 }
 
+// a ring keeps its hole however few triangles are asked for
+static void a_ring_is_not_pinched(void **state)
+{
+    (void)state;
+    enum { ROUND = 40, TUBE = 10 };
+    dem_vec3 vertices[ROUND * TUBE];
+    uint32_t triangles[2 * ROUND * TUBE * 3], *t = triangles;
+    for (uint32_t i = 0; i < ROUND; i++)
+        for (uint32_t j = 0; j < TUBE; j++) {
+            double a = 2 * DEM_PI * i / ROUND, b = 2 * DEM_PI * j / TUBE, r = 1 + 0.3 * cos(b);
+            uint32_t i1 = (i + 1) % ROUND, j1 = (j + 1) % TUBE;
+            vertices[i * TUBE + j] = v3(r * cos(a), r * sin(a), 0.3 * sin(b));
+            uint32_t corners[4] = {i * TUBE + j, i1 * TUBE + j, i1 * TUBE + j1, i * TUBE + j1};
+            for (int k = 0; k < 6; k++)
+                *t++ = corners[(const int[6]){0, 1, 2, 0, 2, 3}[k]];
+        }
+    dem_mesh ring = shape_copy(vertices, ROUND * TUBE, triangles, 2 * ROUND * TUBE), few;
+    dem_error error;
+    dem_edges edges = {0};
+    check_ok(dem_mesh_decimate(&ring, 4, &few, &error), error);
+    check_ok(dem_edges_build(&edges, &few, &error), error);
+    check(edges.border == 0 && edges.many == 0 && edges.duplicates == 0);
+    check(few.triangle_count == 2 * few.vertex_count && few.triangle_count < 100);
+    check_close(dem_mesh_solid(&few).volume, dem_mesh_solid(&ring).volume, 1e-12);
+    dem_edges_release(&edges);
+    dem_mesh_free(&few);
+    dem_mesh_free(&ring);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(a_decimated_surface_has_the_volume_and_the_centre_at_any_scale),
         cmocka_unit_test(a_coarse_mesh_is_copied_and_a_huge_one_thinned_first),
         cmocka_unit_test(a_decimated_surface_is_closed_and_near),
+        cmocka_unit_test(a_ring_is_not_pinched),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
