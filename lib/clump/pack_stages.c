@@ -207,7 +207,7 @@ static dem_status project(dem_pack_stages *run, size_t kept, size_t tangent, boo
         if (!*met || k + 1 == PROJECTIONS)
             break;
         DEM_TRY(dem_moment_rows_set(p, &run->state, tangent, &run->rows, error));
-        DEM_TRY(polish(run, &run->lines, tangent, error));
+        DEM_TRY(polish(run, k == 0 ? &run->rough : &run->lines, tangent, error));
     }
     return DEM_OK;
 }
