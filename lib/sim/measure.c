@@ -11,7 +11,19 @@
 #include "sim/population.h"
 #include "sim/servo.h"
 
-// arrays of the bodies, for as many as there are rows
+static void release_columns(dem_views *v)
+{
+    void *all[] = {v->shape,    v->coordination, v->id,    v->scale,  v->mass,       v->position,
+                   v->velocity, v->spin,         v->force, v->moment, v->orientation};
+    for (size_t i = 0; i < sizeof all / sizeof *all; i++)
+        free(all[i]);
+    v->shape = v->coordination = v->id = NULL;
+    v->scale = v->mass = NULL;
+    v->position = v->velocity = v->spin = v->force = v->moment = NULL;
+    v->orientation = NULL;
+}
+
+// arrays of the bodies, for as many as there are rows; not before something is measured
 static bool make_columns(dem_views *v, size_t n)
 {
     v->shape = dem_alloc(n, sizeof *v->shape);
@@ -25,17 +37,11 @@ static bool make_columns(dem_views *v, size_t n)
     v->force = dem_alloc(n, sizeof *v->force);
     v->moment = dem_alloc(n, sizeof *v->moment);
     v->orientation = dem_alloc(n, sizeof *v->orientation);
-    v->by_row = dem_alloc(n, sizeof *v->by_row);
-    return v->shape && v->coordination && v->id && v->scale && v->mass && v->position && v->velocity && v->spin &&
-           v->force && v->moment && v->orientation && v->by_row;
-}
-
-static void release_columns(dem_views *v)
-{
-    void *all[] = {v->shape,    v->coordination, v->id,    v->scale,  v->mass,        v->position,
-                   v->velocity, v->spin,         v->force, v->moment, v->orientation, v->by_row};
-    for (size_t i = 0; i < sizeof all / sizeof *all; i++)
-        free(all[i]);
+    bool good = v->shape && v->coordination && v->id && v->scale && v->mass && v->position && v->velocity && v->spin &&
+                v->force && v->moment && v->orientation;
+    if (!good)
+        release_columns(v);
+    return good;
 }
 
 void dem_views_number(dem_world *w)
@@ -50,7 +56,8 @@ dem_status dem_views_create(dem_world *w, dem_error *error)
 {
     dem_views *v = &w->views;
     v->walls = dem_alloc_zero(w->walls.count, sizeof *v->walls);
-    if (!make_columns(v, w->bodies.count) || !v->walls)
+    v->by_row = dem_alloc(w->bodies.count, sizeof *v->by_row);
+    if (!v->by_row || !v->walls)
         return dem_fail_memory(error);
     dem_views_number(w);
     return DEM_OK;
@@ -58,8 +65,12 @@ dem_status dem_views_create(dem_world *w, dem_error *error)
 
 bool dem_views_grow(dem_world *w)
 {
-    release_columns(&w->views);
-    if (!make_columns(&w->views, w->bodies.count))
+    dem_views *v = &w->views;
+    free(v->by_row);
+    v->by_row = dem_alloc(w->bodies.count, sizeof *v->by_row);
+    bool measured = v->shape;
+    release_columns(v);
+    if (!v->by_row || (measured && !make_columns(v, w->bodies.count)))
         return false;
     dem_views_number(w);
     return true;
@@ -68,6 +79,7 @@ bool dem_views_grow(dem_world *w)
 void dem_views_release(dem_views *v)
 {
     release_columns(v);
+    free(v->by_row);
     free(v->contacts);
     free(v->walls);
     free(v->records);
@@ -551,6 +563,8 @@ dem_status dem_world_measure(dem_world *w, dem_error *error)
     double begin = dem_clock();
     dem_views *v = &w->views;
     size_t n = w->bodies.count;
+    if (!v->shape && !make_columns(v, n))
+        return dem_fail_memory(error);
     v->figures = (dem_figures){.time = dem_world_time(w), .step = w->steps};
     v->elastic = 0;
     v->since = (dem_energy){0};
