@@ -76,7 +76,7 @@ static double off_triangle(const search *s, uint32_t triangle, dem_vec3 p)
 static void mesh_evaluate(const search *s, cell *c)
 {
     double enough = threshold(s) - c->reach;
-    dem_boundary_hit hit = dem_boundary_closest(s->boundary, c->middle, enough);
+    dem_boundary_hit hit = dem_boundary_closest(s->boundary, c->middle, enough, INFINITY);
     c->found = c->bound = -INFINITY;
     if (hit.distance <= enough)
         return;
@@ -288,7 +288,7 @@ static bool vertex_distances(const search *s, double low, double *distance, size
             used[count++] = (uint32_t)v;
 #pragma omp parallel for num_threads(s->threads) schedule(dynamic, CHUNK)
     for (size_t k = 0; k < count; k++)
-        distance[used[k]] = dem_boundary_closest(s->boundary, mesh->vertices[used[k]], low).distance;
+        distance[used[k]] = dem_boundary_closest(s->boundary, mesh->vertices[used[k]], low, INFINITY).distance;
     free(used);
     return true;
 }
