@@ -262,7 +262,8 @@ bool dem_farthest_of_boundary(const dem_tree *mesh, const dem_boundary *boundary
     for (size_t i = 0; i < count; i++) {
         dem_ball ball = boundary->balls[points[i].ball];
         double wide = SPREAD * sqrt(points[i].area), level = sign * hits[i].level;
-        cell c = {.middle = points[i].normal, .other = hits[i].closest, .bounded = true, .index = points[i].ball, .kind = PATCH};
+        cell c = {.middle = points[i].normal, .other = hits[i].closest, .bounded = true, .index = points[i].ball,
+                  .kind = PATCH};
         if (level + wide <= threshold(&s))
             continue;
         dem_vec3 a = v3_normal_to(c.middle), b = v3_cross(c.middle, a);
