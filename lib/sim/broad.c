@@ -12,8 +12,12 @@
 #include "sim/population.h"
 
 enum { LEVELS = 24, CELLS_LEAST = 4 };
+enum { BODIES_TO_SHARE = 512 };  // that are worth more than one thread
 
-static const double SKIN = 0.2;  // of the mean bounding radius; flat from 0.1 to 0.4
+static const double SKIN = 0.2;       // of the mean bounding radius; flat from 0.1 to 0.4
+static const double SKIN_STEPS = 40;  // that the skin should last where bodies are fast, as long as
+static const double SKIN_MOST = 2;    // ... it is not so many times as wide
+static const double SKIN_LEFT = 0.1;  // of the skin, that looking once more at how far bodies have moved is worth
 
 typedef struct level {
     double cell, radius;  // edge of a cell, largest radius [m]
@@ -27,6 +31,14 @@ typedef struct near_pair {
     uint32_t a, b, image;
 } near_pair;
 
+// what a thread finds
+typedef struct finding {
+    uint32_t *found;  // about one body
+    near_pair *near;
+    size_t count, capacity;
+    bool failed;
+} finding;
+
 typedef struct pair_limits {
     double a, b;
 } pair_limits;
@@ -39,11 +51,15 @@ struct dem_search {
     dem_box box;
     double pad;            // of distances in 32 bits [m]
     float *x, *y, *z, *r;  // sorted by level and cell
-    uint32_t *id, *cell, *found;
+    uint32_t *id, *cell;
     uint8_t *level_of;
     int32_t *moved;
-    near_pair *near, *sorted;
-    size_t near_count, near_capacity, sorted_capacity;
+    finding *findings;  // [parts]
+    int parts;
+    near_pair *near;              // of all parts: the only one's, or joined
+    near_pair *joined, *sorted;
+    size_t near_count, joined_capacity, sorted_capacity;
+    near_pair *taken;  // by their first bodies
     pair_limits *limits;
     size_t limit_capacity;
     dem_pairs spare;  // to be filled while the old ones are still read
@@ -148,10 +164,14 @@ dem_status dem_search_create(dem_world *w, dem_error *error)
     s->r = dem_alloc_zero(room, sizeof *s->r);
     s->id = dem_alloc_zero(room, sizeof *s->id);
     s->cell = dem_alloc(n + 1, sizeof *s->cell);
-    s->found = dem_alloc(2 * room, sizeof *s->found);
+    s->parts = n > BODIES_TO_SHARE ? w->threads : 1;
+    s->findings = dem_alloc_zero((size_t)s->parts, sizeof *s->findings);
+    bool found = s->findings;
+    for (int i = 0; found && i < s->parts; i++)
+        found = (s->findings[i].found = dem_alloc(2 * room, sizeof *s->findings[i].found)) != NULL;
     s->level_of = dem_alloc(n + 1, sizeof *s->level_of);
     s->moved = dem_alloc_zero(3 * n + 3, sizeof *s->moved);
-    bool good = s->x && s->y && s->z && s->r && s->id && s->cell && s->found && s->level_of && s->moved;
+    bool good = s->x && s->y && s->z && s->r && s->id && s->cell && found && s->level_of && s->moved;
     return good ? DEM_OK : dem_fail_memory(error);
 }
 
@@ -159,8 +179,12 @@ void dem_search_destroy(dem_search *s)
 {
     if (!s)
         return;
-    void *all[] = {s->x,     s->y,        s->z,     s->r,    s->id,     s->cell,
-                   s->found, s->level_of, s->moved, s->near, s->sorted, s->limits};
+    for (int i = 0; s->findings && i < s->parts; i++) {
+        free(s->findings[i].found);
+        free(s->findings[i].near);
+    }
+    void *all[] = {s->x,        s->y,        s->z,     s->r,    s->id,     s->cell,
+                   s->findings, s->level_of, s->moved, s->joined, s->sorted, s->limits};
     for (size_t i = 0; i < sizeof all / sizeof *all; i++)
         free(all[i]);
     for (int i = 0; i < LEVELS; i++)
@@ -254,8 +278,8 @@ static dem_status build_grids(search *s, dem_error *error)
 
 // ---- queries
 
-// candidates of a ball in one grid: ids in s->found
-static size_t look_around(search *s, const level *l, dem_vec3 x, double reach)
+// candidates of a ball in one grid
+static size_t look_around(const search *s, const level *l, dem_vec3 x, double reach, uint32_t *found)
 {
     dem_vec3 from = v3_sub(x, s->box.low);
     dem_scan_job job = {.x = s->x,
@@ -265,7 +289,7 @@ static size_t look_around(search *s, const level *l, dem_vec3 x, double reach)
                         .id = s->id,
                         .centre = {(float)from.x, (float)from.y, (float)from.z},
                         .reach = (float)((reach + s->pad) * (1 + 1e-6)),
-                        .found = s->found};
+                        .found = found};
     int32_t c[3];
     cell_of(s, l, x, c);
     bool row = c[0] > 0 && (uint32_t)c[0] + 1 < l->dims[0];
@@ -293,18 +317,18 @@ static bool make_room(void *array, size_t *capacity, size_t count, size_t size)
     return *p != NULL;
 }
 
-static bool add_near(search *s, uint32_t a, uint32_t b, uint32_t image)
+static bool add_near(const search *s, finding *f, uint32_t a, uint32_t b, uint32_t image)
 {
     if (hold_whole(body_hold(&s->w->bodies, a)) && hold_whole(body_hold(&s->w->bodies, b)))
         return true;  // contacts can do nothing to either
-    if (!dem_grow(&s->near, &s->near_capacity, s->near_count, sizeof *s->near))
+    if (!dem_grow(&f->near, &f->capacity, f->count, sizeof *f->near))
         return false;
-    s->near[s->near_count++] = (near_pair){a, b, image};
+    f->near[f->count++] = (near_pair){a, b, image};
     return true;
 }
 
 // partners of body i seen from where its image stands
-static bool look_from_image(search *s, uint32_t i, const int image[3])
+static bool look_from_image(const search *s, finding *f, uint32_t i, const int image[3])
 {
     const dem_bodies *b = &s->w->bodies;
     bool own = image[0] == 0 && image[1] == 0 && image[2] == 0;
@@ -314,13 +338,13 @@ static bool look_from_image(search *s, uint32_t i, const int image[3])
     if (!own)
         x = v3_add(x, v3(s->w->shifts[4 * away], s->w->shifts[4 * away + 1], s->w->shifts[4 * away + 2]));
     for (int k = s->level_of[i]; k < s->level_count; k++) {
-        size_t count = look_around(s, &s->levels[k], x, b->radius[i] + s->w->skin + s->w->ahead);
+        size_t count = look_around(s, &s->levels[k], x, b->radius[i] + s->w->skin + s->w->ahead, f->found);
         for (size_t j = 0; j < count; j++) {
-            uint32_t other = s->found[j];
+            uint32_t other = f->found[j];
             if (k == s->level_of[i] && (other < i || (other == i && !first_half)))
                 continue;
             // i at x + S sees the other at its place: the other is at -S from i
-            bool good = other >= i ? add_near(s, i, other, back) : add_near(s, other, i, away);
+            bool good = other >= i ? add_near(s, f, i, other, back) : add_near(s, f, other, i, away);
             if (!good)
                 return false;
         }
@@ -328,7 +352,7 @@ static bool look_from_image(search *s, uint32_t i, const int image[3])
     return true;
 }
 
-static bool look_from(search *s, uint32_t i)
+static bool look_from(const search *s, finding *f, uint32_t i)
 {
     const dem_domain_def *domain = &s->w->domain;
     double reach = s->w->bodies.radius[i] + s->levels[s->level_count - 1].radius + s->w->skin + s->w->ahead;
@@ -344,9 +368,61 @@ static bool look_from(search *s, uint32_t i)
     for (int x = low[0]; x <= high[0]; x++)
         for (int y = low[1]; y <= high[1]; y++)
             for (int z = low[2]; z <= high[2]; z++)
-                if (!look_from_image(s, i, (int[]){x, y, z}))
+                if (!look_from_image(s, f, i, (int[]){x, y, z}))
                     return false;
     return true;
+}
+
+// whole segments of bodies for a part
+static size_t part_begin(const search *s, int part)
+{
+    size_t row = s->w->segment_count * (size_t)part / (size_t)s->parts * DEM_SEGMENT;
+    return row < s->w->bodies.count ? row : s->w->bodies.count;
+}
+
+static void look_part(void *user, int part)
+{
+    const search *s = user;
+    if (part >= s->parts)
+        return;
+    finding *f = &s->findings[part];
+    f->count = 0;
+    f->failed = false;
+    for (size_t i = part_begin(s, part); i < part_begin(s, part + 1) && !f->failed; i++)
+        f->failed = !body_absent(&s->w->bodies, i) && !look_from(s, f, (uint32_t)i);
+}
+
+static void in_parts(search *s, void (*work)(void *user, int part))
+{
+    if (s->parts > 1)
+        dem_team_run(s->w->team, work, s);
+    else
+        work(s, 0);
+}
+
+// what all parts have found, in the order of bodies
+static dem_status look_from_all(search *s, dem_error *error)
+{
+    in_parts(s, look_part);
+    s->near_count = 0;
+    for (int i = 0; i < s->parts; i++) {
+        if (s->findings[i].failed)
+            return dem_fail_memory(error);
+        s->near_count += s->findings[i].count;
+    }
+    s->near = s->findings[0].near;
+    if (s->parts == 1)
+        return DEM_OK;
+    if (!make_room(&s->joined, &s->joined_capacity, s->near_count, sizeof *s->joined))
+        return dem_fail_memory(error);
+    s->near = s->joined;
+    size_t at = 0;
+    for (int i = 0; i < s->parts; i++) {
+        if (s->findings[i].count)
+            memcpy(s->near + at, s->findings[i].near, s->findings[i].count * sizeof *s->near);
+        at += s->findings[i].count;
+    }
+    return DEM_OK;
 }
 
 // ---- pairs
@@ -374,8 +450,8 @@ static void sort_partners(near_pair *near, size_t count)
     }
 }
 
-// by a, then b, then image; first[a] is where those of a begin
-static dem_status sort_near(search *s, uint32_t *first, const near_pair **sorted, dem_error *error)
+// by a; first[a] is where those of a begin
+static dem_status sort_near(search *s, uint32_t *first, near_pair **sorted, dem_error *error)
 {
     near_pair *near = s->near;
     size_t n = s->w->bodies.count;
@@ -393,8 +469,6 @@ static dem_status sort_near(search *s, uint32_t *first, const near_pair **sorted
         first[0] = 0;
         near = s->sorted;
     }
-    for (size_t i = 0; near && i < n; i++)
-        sort_partners(near + first[i], first[i + 1] - first[i]);
     *sorted = near;
     return DEM_OK;
 }
@@ -468,9 +542,17 @@ void dem_pairs_release(dem_pairs *pairs)
 }
 
 // what is known of the pairs that stay; the segments of those that go with contacts, or are seen elsewhere, are dirty
-static void merge_pairs(search *s, const near_pair *near, const dem_pairs *old, dem_pairs *pairs, pair_limits *limits)
+static void merge_part(void *user, int part)
 {
-    for (size_t a = 0; a < s->w->bodies.count; a++) {
+    search *s = user;
+    if (part >= s->parts)
+        return;
+    near_pair *near = s->taken;
+    const dem_pairs *old = &s->w->pairs;
+    dem_pairs *pairs = &s->spare;
+    pair_limits *limits = s->limits;
+    for (size_t a = part_begin(s, part); a < part_begin(s, part + 1); a++) {
+        sort_partners(near + pairs->first[a], pairs->first[a + 1] - pairs->first[a]);
         size_t o = old->count ? old->first[a] : 0, o_end = old->count ? old->first[a + 1] : 0;
         bool *dirty = &s->w->contacts.segments[a / DEM_SEGMENT].dirty;
         for (size_t i = pairs->first[a]; i < pairs->first[a + 1]; i++) {
@@ -523,12 +605,11 @@ static void link_adjacency(const search *s, dem_pairs *pairs, const pair_limits 
 static dem_status replace_pairs(search *s, dem_error *error)
 {
     dem_pairs *pairs = &s->spare;
-    const near_pair *near = NULL;
     if (!make_room(&s->limits, &s->limit_capacity, s->near_count, sizeof *s->limits) ||
         !take_pairs(pairs, s->w->bodies.count, s->near_count))
         return dem_fail_memory(error);
-    DEM_TRY(sort_near(s, pairs->first, &near, error));
-    merge_pairs(s, near, &s->w->pairs, pairs, s->limits);
+    DEM_TRY(sort_near(s, pairs->first, &s->taken, error));
+    in_parts(s, merge_part);
     if (!take_links(pairs, &s->w->pairs, s->w->bodies.count)) {
         pairs->count = 0;
         return dem_fail_memory(error);
@@ -540,18 +621,79 @@ static dem_status replace_pairs(search *s, dem_error *error)
     return DEM_OK;
 }
 
+static dem_vec3 then_of(const dem_bodies *b, size_t row)
+{
+    const double *then = b->then + 3 * row;
+    return v3(then[0], then[1], then[2]);
+}
+
+// by the speed of the fastest body; bodies that leave are looked for by the skin, so there it stays
+static double skin_now(const dem_world *w)
+{
+    const dem_bodies *b = &w->bodies;
+    double fastest = 0, largest = 0, most = SKIN_MOST * w->skin_least;
+    if (w->population)
+        return w->skin_least;
+    for (size_t i = 0; i < b->count; i++) {
+        const double *v = body_pose(b, i) + 8;
+        fastest = larger(fastest, v[0] * v[0] + v[1] * v[1] + v[2] * v[2]);
+        largest = larger(largest, b->radius[i]);
+    }
+    // images that see each other have to be among those that there are
+    for (int k = 0; w->periodic && k < 3; k++)
+        if (w->domain.periodic[k])
+            most = smaller(most, (DEM_IMAGES_ASIDE - 1) * (v3_get(w->domain.high, k) - v3_get(w->domain.low, k)) -
+                                     2 * largest - w->ahead);
+    return larger(w->skin_least, smaller(most, 2 * SKIN_STEPS * sqrt(fastest) * w->next_step));
+}
+
+// how far bodies have moved since the search: the middle of all, and the most about it. Where a search also puts bodies
+// back into a periodic domain, takes those out that have left, or bounds what walls sweep, there is no middle.
+static double moved_most(const dem_world *w, dem_vec3 *middle)
+{
+    const dem_bodies *b = &w->bodies;
+    dem_box box = box_empty();
+    double most = 0;
+    bool together = !w->periodic && !w->population && !w->walls.sweep && b->count;
+    *middle = v3(0, 0, 0);
+    for (size_t i = 0; together && i < b->count; i++)
+        box = box_with(box, v3_sub(body_position(b, i), then_of(b, i)));
+    if (together)
+        *middle = v3_scale(v3_add(box.low, box.high), 0.5);
+    for (size_t i = 0; i < b->count; i++)
+        if (!body_absent(b, i))
+            most = larger(most, v3_norm2(v3_sub(v3_sub(body_position(b, i), then_of(b, i)), *middle)));
+    return sqrt(most);
+}
+
+// two bodies that were not near have come nearer by no more than both have moved about the middle
+bool dem_broad_extend(dem_world *w)
+{
+    dem_bodies *b = &w->bodies;
+    dem_vec3 middle;
+    if (!(moved_most(w, &middle) <= (1 - SKIN_LEFT) * w->skin / 2))
+        return false;
+    for (size_t i = 0; i < b->count; i++)
+        if (!body_absent(b, i)) {
+            dem_vec3 moved = v3_sub(v3_sub(body_position(b, i), then_of(b, i)), middle);
+            b->search_limit[i] = b->path[i] + w->skin / 2 - v3_norm(moved);
+        }
+    return true;
+}
+
 dem_status dem_broad_search(dem_world *w, dem_error *error)
 {
     search *s = w->search;
-    s->near_count = 0;
     s->level_count = 0;
     if (w->periodic)
         dem_bodies_wrap(w, s->moved);
+    w->skin = skin_now(w);
     DEM_TRY(build_grids(s, error));
-    for (uint32_t i = 0; i < w->bodies.count; i++)
-        if (!body_absent(&w->bodies, i) && !look_from(s, i))
-            return dem_fail_memory(error);
+    DEM_TRY(look_from_all(s, error));
     DEM_TRY(replace_pairs(s, error));
-    memcpy(w->bodies.path_then, w->bodies.path, w->bodies.count * sizeof *w->bodies.path_then);
+    for (size_t i = 0; i < w->bodies.count; i++) {
+        memcpy(w->bodies.then + 3 * i, body_pose(&w->bodies, i), 3 * sizeof *w->bodies.then);
+        w->bodies.search_limit[i] = w->bodies.path[i] + w->skin / 2;
+    }
     return DEM_OK;
 }

@@ -14,7 +14,4 @@ dem_status dem_refresh(dem_world *world, dem_error *error);
 /// The margin of two bodies that move so far in a step [m].
 double dem_refresh_margin(const dem_world *world, size_t a, size_t b, double strides);
 
-/// The least path limit of a body over its pairs, walls and the next search [m].
-double dem_refresh_limit(const dem_world *world, size_t row);
-
 #endif

@@ -245,7 +245,7 @@ static dem_status make_state(dem_world *w, const dem_scene *scene, dem_scene *sp
         return dem_fail_memory(error);
     DEM_TRY(dem_soft_create(w, scene->soft.tau, error));
     DEM_TRY(set_reach(w, error));
-    w->skin = larger(larger(dem_broad_skin(w), 2.2 * w->reach), 1.1 * dem_bonds_gap(w));
+    w->skin = w->skin_least = larger(larger(dem_broad_skin(w), 2.2 * w->reach), 1.1 * dem_bonds_gap(w));
     DEM_TRY(dem_search_create(w, error));
     if (w->periodic)
         DEM_TRY(dem_broad_images(w, error));
@@ -351,6 +351,7 @@ void dem_world_destroy(dem_world *w)
     for (int t = 0; w->candidates && t < w->threads; t++) {
         free(w->candidates[t].pairs);
         free(w->candidates[t].work);
+        free(w->candidates[t].expired);
     }
     dem_soft_release(w);
     for (size_t i = 0; w->wear_events && w->walls.wear && i < w->segment_count; i++)
