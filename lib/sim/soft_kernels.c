@@ -316,6 +316,7 @@ DEM_INLINE soft_spot load_spot(const dem_features f, const soft_job *job, const 
         rows_load(w->laws.rows + k, LAW_SLOTS, e->law + l, spot.law + k);
     for (int k = 0; !f.mixed && k < LAW_MORE; k++)
         spot.law[k] = wide_all(w->laws.rows[k]);
+    spot.step = law_step_of(f, spot.law, w->last_step, w->next_step);
     return spot;
 }
 

@@ -50,6 +50,7 @@ typedef struct soft_result {
 
 typedef struct soft_spot {
     wide law[LAW_MORE];
+    law_step step;
     wide reduced, area;  // R* [m]; R_min^2 / (R_a + R_b) [m]
     double tau, last_step, next_step;
     bool wall;
@@ -108,11 +109,12 @@ DEM_INLINE wide3 soft_slide(const dem_features f, const soft_spot *spot, const s
     wide_mask on = wide_less(zero, s->depth);
     // the cap is by the force along the mean normal
     normal->force = normal->force * s->along;
-    friction_law t = friction(f, spot->law, normal, spot->reduced, s->depth, s->speed, &d->mass, spring, slip, step,
-                              on, wide_less(zero, zero));
-    d->slide = t.stiffness;
-    d->slide_damping = t.damping;
-    out->elastic_slide = half * t.stiffness * dot3(t.spring, t.spring);
+    friction_trial trial = friction_try(f, spot->law, &spot->step, normal, spot->reduced, s->depth, s->speed, &d->mass,
+                                        spring, slip, wide_less(zero, zero));
+    friction_law t = friction(f, spot->law, &spot->step, &trial, on);
+    d->slide = trial.stiffness;
+    d->slide_damping = trial.damping;
+    out->elastic_slide = half * trial.stiffness * dot3(t.spring, t.spring);
     out->lost_friction = out->lost_friction + t.lost;
     if (f.ledger && f.slide_damping)
         out->lost_viscous = wide_fma(half * step, dot3(plus3(m->dash, t.dash), slip), out->lost_viscous);
@@ -146,7 +148,7 @@ DEM_INLINE soft_result soft_act(const dem_features f, const soft_spot *spot, con
     soft_dashpots d = {
         .mass = contact_mass_of(f, inverse), .uneven = zero, .slide = zero, .slide_damping = zero};
     normal_law normal = normal_elastic(f, spot->law, NULL, s->depth, spot->reduced, spot->area);
-    normal_damp(f, spot->law, &normal, &d.mass, s->depth, s->speed, wide_all(spot->last_step), wide_all(1 / step));
+    normal_damp(f, spot->law, &spot->step, &normal, &d.mass, s->depth, s->speed);
     d.stiffness = normal.stiffness;
     d.damping = normal.damping;
     d.elastic = wide_or_zero(on, normal.elastic);

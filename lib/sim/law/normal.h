@@ -17,6 +17,30 @@ typedef struct normal_law {
     wide energy;     ///< of the spring [J] (JKR only)
 } normal_law;
 
+/// What laws take of the step: `step` since the last one [s].
+typedef struct law_step {
+    wide step, per_step;  ///< [s], [1/s]; at the start nothing has passed, and 1 / step is that of the step to come
+    wide rate;            ///< of the dashpot, for this step: see normal_damp [1/s] (rate)
+    wide per_slide;       ///< 1 / tangential stiffness, where this is the law's alone: see slides_alike [m/N]
+} law_step;
+
+/// Whether the tangential stiffness is the same for all contacts of a law.
+DEM_INLINE bool slides_alike(const dem_features f)
+{
+    return f.friction && f.linear && !f.young && !f.hertz && !f.jkr && !f.mindlin;
+}
+
+DEM_INLINE law_step law_step_of(const dem_features f, const wide *law, double last_step, double next_step)
+{
+    wide step = wide_all(last_step), one = wide_all(1);
+    law_step s = {step, wide_all(1 / (last_step > 0 ? last_step : next_step)), wide_all(0), wide_all(0)};
+    if (f.rate)
+        s.rate = law[LAW_RATE] / wide_fma(wide_all(0.25) * step, law[LAW_RATE], one);
+    if (slides_alike(f))
+        s.per_slide = one / (law[LAW_SLIDE_STIFFNESS] + law[LAW_SLIDE_RATIO] * law[LAW_STIFFNESS]);
+    return s;
+}
+
 /// The mass that a contact sees.
 typedef struct contact_mass {
     wide inverse, mass, root;  ///< 1 / m [1/kg], m [kg], sqrt(m) [sqrt(kg)] (restitution only)
@@ -93,15 +117,15 @@ DEM_INLINE wide radius_before(const dem_features f, const normal_law *n, wide re
 /// of one of m, whose damping ratio is larger by 1 + c h / 4 m: c is smaller by that. And the first force counts for a
 /// whole step, wherever in the step the contact has begun: with s = overlap / (h |vn|), the steps since then, it is
 /// weighed by 3/2 s up to s = 1 and then by 2 - s / 2 down to 1, which has no jumps and sums up to the time that has
-/// passed. Likewise at the end of a contact that may pull. `per_step`: 1 / h.
-DEM_INLINE void normal_damp(const dem_features f, const wide *law, normal_law *n, const contact_mass *m, wide overlap,
-                            wide vn, wide step, wide per_step)
+/// passed. Likewise at the end of a contact that may pull.
+DEM_INLINE void normal_damp(const dem_features f, const wide *law, const law_step *s, normal_law *n,
+                            const contact_mass *m, wide overlap, wide vn)
 {
     // by a rate, c / m is a number of the law; in a scene that has both, each contact has one of them
-    wide c = wide_all(0), quarter = wide_all(0.25) * step;
+    wide c = wide_all(0), quarter = wide_all(0.25) * s->step;
     if (f.rate) {
         n->damping = law[LAW_RATE] * m->mass;
-        c = law[LAW_RATE] / wide_fma(quarter, law[LAW_RATE], wide_all(1)) * m->mass;
+        c = s->rate * m->mass;
     }
     if (f.restitution) {
         wide own = law[LAW_ZETA] * wide_sqrt(n->stiffness) * m->root;
@@ -109,7 +133,7 @@ DEM_INLINE void normal_damp(const dem_features f, const wide *law, normal_law *n
         c = c + own / wide_fma(quarter, own * m->inverse, wide_all(1));
     }
     if (f.rate || f.restitution) {
-        wide speed = wide_abs(vn), gone = overlap * per_step;
+        wide speed = wide_abs(vn), gone = overlap * s->per_step;
         wide acts = wide_max(speed, wide_fma(wide_all(-0.5), gone, speed + speed));
         acts = wide_min(wide_all(1.5) * gone, acts);
         wide leaves = f.cut ? wide_select(wide_less(law[LAW_FLOOR], wide_all(0)), acts, vn) : acts;
