@@ -278,20 +278,25 @@ static void inlets_have_their_values(void **state)
     dem_error error;
     char *text = NULL;
     const char *source =
-        "{'schema': 'dem-scene/1', 'domain': {'leaving': 'delete'}, 'materials': {'a': {'density': 2000}},"
-        " 'contacts': [{'between': ['a', 'a'], 'normal': {'law': 'linear', 'stiffness': 1}}],"
+        "{'schema': 'dem-scene/1', 'domain': {'leaving': 'delete'}, 'materials': {'a': {'density': 2000}, 'c': {}},"
+        " 'contacts': [{'between': ['a', 'a'], 'normal': {'law': 'linear', 'stiffness': 1}},"
+        "  {'between': ['a', 'c'], 'normal': {'law': 'linear', 'stiffness': 1}}],"
         " 'shapes': {'b': {'sphere': {'radius': '1 mm'}, 'material': 'a'}},"
         " 'inlets': {'top': {'box': [[0, 0, 0], [1, 1, 1]], 'mix': [{'shape': 'b'}], 'mass_rate': '36 kg/h',"
         "   'velocity': [0, 0, -1], 'velocity_spread': '1 cm/s', 'spin': [1, 2, 3], 'spin_spread': 4, 'start': '1 s',"
         "   'stop': 2, 'count': 50, 'gap': '1 mm', 'seed': 7},"
         "  'jet': {'sphere': {'centre': [1, 2, 3], 'radius': '2 mm'}, 'rate': 10, 'velocity': [1, 0, 0],"
-        "   'mix': [{'shape': 'b', 'size': {'law': 'uniform', 'min': '1 mm', 'max': '2 mm'}}], 'share_by': 'mass'}}}";
+        "   'mix': [{'shape': 'b', 'size': {'law': 'uniform', 'min': '1 mm', 'max': '2 mm'}}], 'share_by': 'mass'},"
+        "  'steel': {'sphere': {'centre': [4, 5, 6], 'radius': '3 mm', 'material': 'c'}, 'rate': 1, 'velocity': [1, 0, 0],"
+        "   'mix': [{'shape': 'b'}]},"
+        "  'open': {'sphere': {'centre': [7, 8, 9], 'radius': '3 mm', 'solid': false}, 'rate': 1, 'velocity': [1, 0, 0],"
+        "   'mix': [{'shape': 'b'}]}}}";
     for (int i = 0; i < 2; i++) {
         // as given, and as it is written
         char *json = text ? text : strdup(source);
         check_ok(scene_read(json, NULL, NULL, &s, &error), error);
         check(s.domain.leaving == DEM_LEAVING_DELETE);
-        assert_int_equal(s.inlet_count, 2);
+        assert_int_equal(s.inlet_count, 4);
         const dem_inlet_def *a = &s.inlets[0], *b = &s.inlets[1];
         assert_string_equal(a->name, "top");
         check(a->kind == DEM_INLET_BOX && a->by_mass && a->high.z == 1 && a->mix_count == 1 && a->seed == 7);
@@ -300,6 +305,15 @@ static void inlets_have_their_values(void **state)
         check(a->start == 1 && a->stop == 2 && a->count == 50 && a->gap == 0.001);
         check(b->kind == DEM_INLET_SPHERE && !b->by_mass && b->rate == 10 && b->radius == 0.002 && b->centre.y == 2);
         check(b->share_by_mass && b->mix[0].size.law == DEM_SIZE_UNIFORM && b->stop == INFINITY && b->seed == 1);
+        // the sphere is a wall, of the grains' material where none is named, unless it is not to be
+        const dem_inlet_def *c = &s.inlets[2], *d = &s.inlets[3];
+        check(!a->solid && b->solid && b->material == 0 && c->solid && c->material == 1 && !d->solid);
+        assert_int_equal(s.wall_count, 2);
+        for (size_t k = 0; k < 2; k++) {
+            const dem_wall_def *wall = &s.walls[k];
+            check(wall->generator && wall->kind == DEM_WALL_SPHERE && wall->outside && wall->material == k);
+            check(wall->radius == (k ? 0.003 : 0.002) && wall->point.z == (k ? 6 : 3));
+        }
         free(json);
         if (i == 0)
             check_ok(dem_scene_resolved(&s, &text, &error), error);

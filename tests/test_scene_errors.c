@@ -424,6 +424,8 @@ static void inlets_that_cannot_be_are_refused(void **state)
         {S GRAIN INLET "'rate': 1}}}", 3, "~needs one of"},
         {S GRAIN INLET "'rate': 1, 'sphere': {'centre': [0, 0, 0], 'radius': 1}, 'box': [[0, 0, 0], [1, 1, 1]]}}}", 3, "~has both of"},
         {S GRAIN INLET "'rate': 1, 'sphere': {'centre': [0, 0, 0], 'radius': 1}}}}", 3, "~never get out of the sphere"},
+        {S GRAIN INLET "'rate': 1, 'sphere': {'centre': [0, 0, 0], 'radius': 1, 'solid': 1}}}}", 3, "~must be true or"},
+        {S GRAIN INLET "'rate': 1, 'sphere': {'centre': [0, 0, 0], 'radius': 1, 'material': 'b'}}}}", 3, "~\"b\""},
         {S GRAIN INLET "'box': [[0, 0, 0], [1, 1, 1]]}}}", 3, "~needs one of"},
         {S GRAIN INLET "'box': [[0, 0, 0], [1, 1, 1]], 'rate': 1, 'mass_rate': 1}}}", 3, "~has both of"},
         {S GRAIN INLET "'box': [[0, 0, 0], [1, 1, 1]], 'rate': 0}}}", 3, "~must be above 0"},

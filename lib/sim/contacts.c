@@ -8,6 +8,10 @@
 #include "sim/bodies.h"
 
 enum { SEGMENTS_TO_SHARE = 8 };  // dirty ones that are worth more than one thread
+enum { IDLE_MOST = 12 };         // idle places beyond the spare ones that a step may come by
+enum { SPARE_MOST = 24 };        // places a list may spare
+enum { REBUILT_SELDOM = 60 };   // steps: where a list is rebuilt less often, spare places cost more than they save
+enum { SPARED_LONG = 400 };      // steps: after these it has to show again that it needs them
 
 static size_t to_blocks(size_t count)
 {
@@ -381,25 +385,27 @@ static bool keep_memory(const dem_segment *s, list *l)
     return true;
 }
 
+static void put_entry(dem_contact_columns *c, size_t at, const entry *item)
+{
+    c->a[at] = item->a;
+    c->b[at] = c->target[at] = item->b;
+    c->sphere_a[at] = item->sphere_a;
+    c->sphere_b[at] = item->sphere_b;
+    if (c->shift)
+        c->shift[at] = item->shift;
+    if (c->law)
+        c->law[at] = item->law;
+    if (c->weight)
+        c->weight[at] = 1;
+}
+
 // the whole list to its places, which are those of segment_place
 static void put_list(dem_contact_columns *c, const dem_segment *s, const list *l)
 {
     size_t k = 0;
     for (size_t lane = 0; k < l->count; lane++)
-        for (size_t block = 0; block < s->across; block++, k++) {
-            const entry *item = &l->items[k];
-            size_t at = s->begin + block * DEM_BLOCK_LANES + lane;
-            c->a[at] = item->a;
-            c->b[at] = c->target[at] = item->b;
-            c->sphere_a[at] = item->sphere_a;
-            c->sphere_b[at] = item->sphere_b;
-            if (c->shift)
-                c->shift[at] = item->shift;
-            if (c->law)
-                c->law[at] = item->law;
-            if (c->weight)
-                c->weight[at] = 1;
-        }
+        for (size_t block = 0; block < s->across; block++, k++)
+            put_entry(c, s->begin + block * DEM_BLOCK_LANES + lane, &l->items[k]);
     const double *from = l->kept;
     for (size_t e = 0; e < l->column_count; e++) {
         k = 0;
@@ -407,6 +413,12 @@ static void put_list(dem_contact_columns *c, const dem_segment *s, const list *l
             for (size_t block = 0; block < s->across; block++, k++)
                 l->columns[e][s->begin + block * DEM_BLOCK_LANES + lane] = *from++;
     }
+}
+
+static entry idle_entry(const dem_world *w)
+{
+    dem_contact_item idle = dem_contact_idle(w, -1);
+    return (entry){.a = idle.a, .b = idle.b, .sphere_a = idle.sphere_a, .sphere_b = idle.sphere_b};
 }
 
 static bool rebuild_segment(dem_world *w, size_t segment, list *l)
@@ -421,26 +433,127 @@ static bool rebuild_segment(dem_world *w, size_t segment, list *l)
             return false;
         w->pairs.fresh[i] = 0;
     }
-    if (!make_room(l, DEM_BLOCK_LANES))
+    size_t full = to_blocks(l->count + s->spare);
+    s->idle = (uint32_t)(full - l->count);
+    if (!make_room(l, s->idle))
         return false;
-    dem_contact_item idle = dem_contact_idle(w, -1);
-    while (l->count % DEM_BLOCK_LANES)
-        l->items[l->count++] = (entry){.a = idle.a, .b = idle.b, .sphere_a = idle.sphere_a, .sphere_b = idle.sphere_b};
+    entry idle = idle_entry(w);
+    while (l->count < full)
+        l->items[l->count++] = idle;
     if (!keep_memory(s, l))
         return false;
     segment_set_end(s, l->count, w->features.soft);
     put_list(&w->contacts.columns, s, l);
     set_targets(w, segment, l);
     s->dirty = false;
+    s->built = w->steps;
     return true;
 }
+
+// ---- lists of which little changes
+//
+// The contacts of a pair move to the first idle places that follow each other and are enough; a list is rebuilt where
+// there are none. Where that happens often, rebuilding leaves more places idle.
+
+// the first of `count` places that are idle, or of the pair itself; the size of the list: there are none
+static size_t find_places(const dem_world *w, const dem_segment *s, const dem_pair *p, size_t count)
+{
+    const uint32_t *a = w->contacts.columns.a + s->begin;
+    size_t size = s->end - s->begin, block = 0, lane = 0, run = 0;
+    for (size_t k = 0; k < size; k++) {
+        bool free = a[block * DEM_BLOCK_LANES + lane] == w->bodies.dummy || (k >= p->start && k < p->start + p->count);
+        run = free ? run + 1 : 0;
+        if (run == count)
+            return k + 1 - count;
+        if (++block == s->across) {
+            block = 0;
+            lane++;
+        }
+    }
+    return size;
+}
+
+// where the momentum of b goes; DEM_ROW_FREE: there is no slot left
+static uint32_t patch_target(dem_world *w, dem_segment *s, const dem_pair *p)
+{
+    if (p->b / w->domain_bodies == p->a / w->domain_bodies)
+        return p->b;
+    if (p->count)
+        return w->contacts.columns.target[segment_place(s, p->start)];
+    if (s->slot_count == s->slot_capacity)
+        return (uint32_t)DEM_ROW_FREE;
+    size_t slot = s->slot_begin + s->slot_count++;
+    w->contacts.slot_body[slot] = p->b;
+    return (uint32_t)(w->bodies.padded + slot);
+}
+
+static void put_idle(dem_world *w, const dem_segment *s, const dem_pair *p, const list *l)
+{
+    entry idle = idle_entry(w);
+    for (size_t k = p->start; k < p->start + p->count; k++) {
+        size_t at = segment_place(s, k);
+        put_entry(&w->contacts.columns, at, &idle);
+        for (size_t e = 0; e < l->column_count; e++)
+            l->columns[e][at] = 0;
+    }
+}
+
+typedef enum patched { PATCHED, PATCH_NO_ROOM, PATCH_NO_MEMORY } patched;
+
+static patched patch_pair(dem_world *w, dem_segment *s, const dem_fresh *fresh, list *l)
+{
+    dem_pair *p = &w->pairs.items[fresh->pair];
+    const dem_pair old = *p;
+    size_t start = 0;
+    uint32_t target = p->b;
+    if (fresh->count) {
+        start = find_places(w, s, p, fresh->count);
+        if (start == s->end - s->begin || (target = patch_target(w, s, p)) == (uint32_t)DEM_ROW_FREE)
+            return PATCH_NO_ROOM;
+    }
+    l->count = 0;
+    if (!list_pair(w, s, p, fresh, l) || !keep_memory(s, l))
+        return PATCH_NO_MEMORY;
+    put_idle(w, s, &old, l);
+    for (size_t k = 0; k < l->count; k++) {
+        size_t at = segment_place(s, start + k);
+        put_entry(&w->contacts.columns, at, &l->items[k]);
+        w->contacts.columns.target[at] = target;
+        for (size_t e = 0; e < l->column_count; e++)
+            l->columns[e][at] = l->kept[e * l->count + k];
+    }
+    p->start = (uint32_t)start;
+    s->idle += old.count;
+    s->idle -= p->count;
+    w->pairs.fresh[fresh->pair] = 0;
+    return PATCHED;
+}
+
+// what changes in a list of pairs, where the rest can stay; the list is dirty where it cannot
+static bool patch_segment(dem_world *w, size_t segment, list *l)
+{
+    dem_segment *s = &w->contacts.segments[segment];
+    patched done = w->features.soft ? PATCH_NO_ROOM : PATCHED;
+    for (uint32_t k = s->changed; k && done == PATCHED; k = w->fresh[k - 1].next)
+        done = patch_pair(w, s, &w->fresh[k - 1], l);
+    s->changed = 0;
+    s->dirty = done != PATCHED || s->idle > s->spare + IDLE_MOST;
+    if (done != PATCHED) {
+        bool often = !w->features.soft && w->steps - s->built <= REBUILT_SELDOM;
+        s->spare = !often ? 0 : s->spare < SPARE_MOST ? s->spare + DEM_BLOCK_LANES : SPARE_MOST;
+    }
+    return done != PATCH_NO_MEMORY;
+}
+
+// ---- room for lists
 
 // what each dirty segment will need of contacts and of slots
 static void count_needs(const dem_world *w, size_t *contacts, size_t *slots)
 {
     for (size_t i = 0; i < w->segment_count; i++) {
         contacts[i] = slots[i] = 0;
-        if (!w->contacts.segments[i].dirty)
+        const dem_segment *s = &w->contacts.segments[i];
+        if (!s->dirty)
             continue;
         size_t domain = i * DEM_SEGMENT / w->domain_bodies;
         for (size_t k = w->pairs.first[i * DEM_SEGMENT]; k < w->pairs.first[segment_end(w, i)]; k++) {
@@ -449,6 +562,8 @@ static void count_needs(const dem_world *w, size_t *contacts, size_t *slots)
             contacts[i] += count;
             slots[i] += count && p->b / w->domain_bodies != domain;
         }
+        contacts[i] += s->spare;
+        slots[i] += s->spare / 4;
     }
 }
 
@@ -483,8 +598,9 @@ static bool reserve_slots(dem_world *w, const size_t *needed, bool *moved)
 
 typedef struct rebuilding {
     dem_world *w;
-    const size_t *segments;  // dirty ones
+    const size_t *segments;
     size_t count;
+    bool (*work)(dem_world *w, size_t segment, list *l);
     int parts;
     atomic_bool failed;
 } rebuilding;
@@ -497,12 +613,40 @@ static void rebuild_part(void *user, int part)
     list l = list_of(&r->w->contacts.columns);
     size_t parts = (size_t)r->parts, from = r->count * (size_t)part / parts, to = r->count * ((size_t)part + 1) / parts;
     for (size_t i = from; i < to; i++)
-        if (!rebuild_segment(r->w, r->segments[i], &l)) {
+        if (!r->work(r->w, r->segments[i], &l)) {
             r->failed = true;
             break;
         }
     free(l.items);
     free(l.kept);
+}
+
+// does the work for some segments, which is nothing for other ones
+static bool for_segments(dem_world *w, const size_t *segments, size_t count,
+                         bool (*work)(dem_world *w, size_t segment, list *l))
+{
+    rebuilding r = {.w = w, .segments = segments, .count = count, .work = work, .parts = 1};
+    if (count > SEGMENTS_TO_SHARE && w->threads > 1) {
+        r.parts = w->threads;
+        dem_team_run(w->team, rebuild_part, &r);
+    } else if (count)
+        rebuild_part(&r, 0);
+    return !r.failed;
+}
+
+static bool rebuild_dirty(dem_world *w, size_t *needed, size_t *slots)
+{
+    count_needs(w, needed, slots);
+    bool moved = false, good = reserve_slots(w, slots, &moved);
+    if (moved)
+        count_needs(w, needed, slots);
+    if (!good || !dem_contacts_reserve(w, &w->contacts, -1, needed))
+        return false;
+    size_t count = 0;
+    for (size_t i = 0; i < w->segment_count; i++)
+        if (w->contacts.segments[i].dirty)
+            needed[count++] = i;
+    return for_segments(w, needed, count, rebuild_segment);
 }
 
 dem_status dem_contacts_rebuild(dem_world *w, dem_error *error)
@@ -511,22 +655,32 @@ dem_status dem_contacts_rebuild(dem_world *w, dem_error *error)
            *slots = needed ? needed + w->segment_count : NULL;
     if (!needed)
         return dem_fail_memory(error);
-    count_needs(w, needed, slots);
-    bool moved = false, good = reserve_slots(w, slots, &moved);
-    if (moved)
-        count_needs(w, needed, slots);
-    good = good && dem_contacts_reserve(w, &w->contacts, -1, needed);
-    rebuilding r = {.w = w, .segments = needed, .parts = 1};
-    for (size_t i = 0; good && i < w->segment_count; i++)
-        if (w->contacts.segments[i].dirty)
-            needed[r.count++] = i;
-    if (r.count > SEGMENTS_TO_SHARE && w->threads > 1) {
-        r.parts = w->threads;
-        dem_team_run(w->team, rebuild_part, &r);
-    } else
-        rebuild_part(&r, 0);
+    size_t count = 0;
+    bool dirty = false;
+    for (size_t i = 0; i < w->segment_count; i++) {
+        dem_segment *s = &w->contacts.segments[i];
+        if (s->dirty)
+            s->changed = 0;
+        else if (s->changed)
+            needed[count++] = i;
+    }
+    bool good = for_segments(w, needed, count, patch_segment);
+    for (size_t i = 0; i < w->segment_count; i++)
+        dirty |= w->contacts.segments[i].dirty;
+    good = good && (!dirty || rebuild_dirty(w, needed, slots));
     free(needed);
-    return good && !r.failed ? DEM_OK : dem_fail_memory(error);
+    return good ? DEM_OK : dem_fail_memory(error);
+}
+
+void dem_contacts_tighten(dem_world *w)
+{
+    for (size_t i = 0; i < w->segment_count; i++) {
+        dem_segment *s = &w->contacts.segments[i];
+        if (w->steps - s->built <= SPARED_LONG || (!s->spare && s->idle < DEM_BLOCK_LANES))
+            continue;
+        s->spare = 0;
+        s->dirty = true;
+    }
 }
 
 void dem_contacts_add_slots(dem_world *w, size_t begin, size_t end)

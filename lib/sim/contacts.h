@@ -79,8 +79,12 @@ void dem_contacts_release(dem_contacts *contacts, size_t segments);
 /// Makes room for `needed[segment]` contacts in every dirty segment.
 bool dem_contacts_reserve(dem_world *world, dem_contacts *contacts, int form, const size_t *needed);
 
-/// Rebuilds the lists of all dirty segments from the pairs and the fresh candidates, and forgets these.
+/// Patches the lists of pairs by the fresh candidates, or rebuilds those that are dirty or have no room, and forgets the
+/// candidates.
 dem_status dem_contacts_rebuild(dem_world *world, dem_error *error);
+
+/// Marks the lists dirty whose spare places have not been needed for long.
+void dem_contacts_tighten(dem_world *world);
 
 /// Adds the slots of all segments that belong to the bodies [begin, end), and empties them.
 void dem_contacts_add_slots(dem_world *world, size_t begin, size_t end);

@@ -224,15 +224,26 @@ static dem_status let_due_in(dem_world *w, dem_inlet *inlet, room *r, dem_error 
 
 // ---- out of the sphere
 
-static bool is_out(const dem_world *w, const dem_inlet *inlet)
+static bool is_out_of(const dem_world *w, uint32_t row, dem_vec3 centre, double radius)
 {
-    dem_vec3 d = v3_sub(body_position(&w->bodies, inlet->inside), inlet->def.centre);
+    dem_vec3 d = v3_sub(body_position(&w->bodies, row), centre);
     for (int k = 0; k < 3; k++)
         if (w->domain.periodic[k]) {
             double side = v3_get(w->domain.high, k) - v3_get(w->domain.low, k);
             v3_set(&d, k, v3_get(d, k) - round(v3_get(d, k) / side) * side);
         }
-    return v3_norm(d) >= inlet->def.radius + w->bodies.radius[inlet->inside];
+    return v3_norm(d) >= radius + w->bodies.radius[row];
+}
+
+// of its own sphere, and of all others that are walls
+static bool is_out(const dem_world *w, const dem_inlet *inlet)
+{
+    bool out = is_out_of(w, inlet->inside, inlet->def.centre, inlet->def.radius);
+    for (size_t i = 0; out && i < w->walls.count; i++) {
+        const dem_wall *wall = &w->walls.items[i];
+        out = !wall->generator || is_out_of(w, inlet->inside, wall->surface.point, wall->surface.begin);
+    }
+    return out;
 }
 
 // while it was held it counted as a wall, without energy; what it has now comes in

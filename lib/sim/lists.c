@@ -96,6 +96,7 @@ static dem_status search(dem_world *w, dem_error *error)
 {
     DEM_TRY(dem_broad_search(w, error));
     w->searches++;
+    dem_contacts_tighten(w);
     if (w->walls.sweep)
         bound_walls(w);
     ask_all(w);

@@ -84,7 +84,7 @@ double dem_placing_clearance(void *user, dem_vec3 centre, double radius, double 
     for (size_t i = 0; i < p->w->walls.count; i++) {
         const dem_wall *wall = &p->w->walls.items[i];
         if (!wall->mesh) {
-            if (p->smooth)
+            if (p->smooth && !wall->generator)  // which inlets let bodies in through
                 least = smaller(least, smooth_distance(p->w, i, centre) - radius);
             continue;
         }

@@ -15,7 +15,7 @@ typedef struct dem_placing {
     const dem_world *w;
     dem_fill_shape *shapes;
     dem_ball *balls;
-    bool smooth;   ///< planes and cylinders are asked, too
+    bool smooth;   ///< smooth walls are asked, too, but generator spheres
     bool failed;   ///< out of memory, at the end of any call
     dem_ray_list near;
 } dem_placing;

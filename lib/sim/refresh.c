@@ -192,7 +192,7 @@ static bool collect_expired(dem_world *w)
 }
 
 // each body's share of the slack in proportion to its speed
-static void apply(dem_world *w, const dem_fresh *fresh, size_t index)
+static void apply(dem_world *w, dem_fresh *fresh, size_t index)
 {
     dem_bodies *b = &w->bodies;
     dem_pairs *pairs = &w->pairs;
@@ -206,8 +206,10 @@ static void apply(dem_world *w, const dem_fresh *fresh, size_t index)
     b->limit[p->b] = smaller(b->limit[p->b], limit_b);
     memcpy(p->normal, fresh->normal, sizeof p->normal);
     if (fresh->changed) {
+        dem_segment *s = &w->contacts.segments[p->a / DEM_SEGMENT];
         pairs->fresh[fresh->pair] = (uint32_t)index + 1;
-        w->contacts.segments[p->a / DEM_SEGMENT].dirty = true;
+        fresh->next = s->changed;
+        s->changed = (uint32_t)index + 1;
     } else
         pairs->fresh[fresh->pair] = 0;
 }

@@ -12,7 +12,7 @@
 #include "sim/measure.h"
 #include "sim/population.h"
 
-enum { LAYOUT = 3 };
+enum { LAYOUT = 4 };
 
 static uint64_t hash_bytes(uint64_t hash, const void *bytes, size_t size)
 {
@@ -293,6 +293,24 @@ static void pass_contacts(cursor *c, dem_world *w, dem_contacts *contacts, int f
     free(needed);
 }
 
+// what is idle in the lists of pairs, and where momenta of other domains go
+static void pass_slots(cursor *c, dem_world *w)
+{
+    dem_contacts *contacts = &w->contacts;
+    for (size_t i = 0; i < w->segment_count; i++) {
+        dem_segment *s = &contacts->segments[i];
+        s->slot_begin = pass_count(c, s->slot_begin);
+        s->slot_count = pass_count(c, s->slot_count);
+        s->slot_capacity = pass_count(c, s->slot_capacity);
+        s->built = pass_count(c, s->built);
+        pass(c, &s->idle, sizeof s->idle);
+        pass(c, &s->spare, sizeof s->spare);
+    }
+    pass_array(c, &contacts->slot_body, &contacts->slot_capacity, sizeof *contacts->slot_body);
+    if (!c->out && !c->failed)
+        c->failed = !dem_bodies_reserve_slots(&w->bodies, contacts->slot_capacity);
+}
+
 static void pass_touches(cursor *c, dem_world *w)
 {
     for (size_t i = 0; w->mesh_touches && i < w->segment_count; i++) {
@@ -364,6 +382,7 @@ static void pass_state(cursor *c, dem_world *w)
     pass_bodies(c, w);
     pass_pairs(c, w);
     pass_contacts(c, w, &w->contacts, -1);
+    pass_slots(c, w);
     for (int form = 0; form < DEM_WALL_FORMS; form++)
         if (w->wall_contacts[form].segments)
             pass_contacts(c, w, &w->wall_contacts[form], form);
@@ -414,6 +433,18 @@ static bool sound(const dem_world *w)
             p->adjacent_b >= 2 * w->pairs.count)
             return false;
     }
+    for (size_t i = 0; i < w->segment_count; i++) {
+        const dem_segment *s = &w->contacts.segments[i];
+        if (s->slot_begin > w->contacts.slot_capacity || s->slot_capacity > w->contacts.slot_capacity - s->slot_begin ||
+            s->slot_count > s->slot_capacity)
+            return false;
+        for (size_t at = s->begin; at < s->end; at++)
+            if (w->contacts.columns.target[at] >= w->bodies.padded + w->contacts.slot_capacity)
+                return false;
+    }
+    for (size_t k = 0; k < w->contacts.slot_capacity; k++)
+        if (w->contacts.slot_body[k] >= w->bodies.padded)
+            return false;
     for (size_t i = 0; w->bonds && i < w->bonds->count; i++) {
         const dem_bond *bond = &w->bonds->items[i];
         if (bond->a >= n || bond->b >= n || bond->def >= w->bonds->def_count ||
@@ -458,10 +489,6 @@ dem_status dem_world_restore(dem_world *w, const void *bytes, size_t size, dem_e
     if (w->bonds && !dem_bonds_list(w))
         return dem_fail_memory(error);
     dem_walls_place(&w->walls, dem_world_time(w));
-    // where momenta of other domains go is made anew
-    for (size_t i = 0; i < w->segment_count; i++)
-        w->contacts.segments[i].dirty = true;
-    DEM_TRY(dem_contacts_rebuild(w, error));
     return w->features.soft ? dem_soft_reserve(w, error) : DEM_OK;
 }
 

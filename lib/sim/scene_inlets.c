@@ -2,7 +2,9 @@
 #include <math.h>
 
 #include "math/vec.h"
-#include "sim/scene_reader.h"
+#include "sim/scene_wall.h"
+
+static const uint32_t NO_MATERIAL = UINT32_MAX;
 
 // the mix and the box are read as those of a fill
 typedef struct inlet_text {
@@ -15,6 +17,8 @@ static const dem_field sphere_table[] = {
     {"centre", dem_field_vector, .at = offsetof(inlet_text, inlet.centre), true, DEM_DIMENSION_LENGTH},
     {"radius", dem_field_quantity, .at = offsetof(inlet_text, inlet.radius), true, DEM_DIMENSION_LENGTH,
      DEM_RANGE_POSITIVE},
+    {"solid", dem_field_flag, .at = offsetof(inlet_text, inlet.solid)},
+    {"material", dem_field_material, .at = offsetof(inlet_text, inlet.material)},
 };
 static const dem_fields sphere_fields = DEM_FIELDS(sphere_table);
 
@@ -56,7 +60,7 @@ static dem_status one_of(dem_scene_reader *r, const dem_scene_value *v, bool a, 
 static dem_status read_inlet(dem_scene_reader *r, const dem_scene_value *v, const dem_field *field, const char *name,
                              dem_inlet_def *inlet)
 {
-    inlet_text text = {.fill.seed = 1, .inlet = {.name = name, .stop = INFINITY, .seed = 1}};
+    inlet_text text = {.fill.seed = 1, .inlet = {.name = name, .stop = INFINITY, .solid = true, .material = NO_MATERIAL, .seed = 1}};
     uint64_t given;
     DEM_TRY(dem_fields_read(r, v, field->fields, &text, &given));
     bool sphere = dem_given(given, INLET_SPHERE), by_mass = dem_given(given, INLET_MASS_RATE);
@@ -75,8 +79,11 @@ static dem_status read_inlet(dem_scene_reader *r, const dem_scene_value *v, cons
     i->share_by_mass = text.fill.share_by_mass;
     i->low = text.fill.low;
     i->high = text.fill.high;
+    i->solid = i->solid && sphere;
+    if (i->material == NO_MATERIAL)
+        i->material = r->scene->shapes[i->mix[0].shape].material;
     *inlet = *i;
-    return DEM_OK;
+    return inlet->solid ? dem_wall_add_generator(r, inlet) : DEM_OK;
 }
 
 dem_status dem_section_inlets(dem_scene_reader *r, const dem_scene_value *v, const dem_field *field, void *into)

@@ -25,6 +25,9 @@ dem_status dem_wall_check_servo(dem_scene_reader *r, const dem_scene_value *v, w
 /// The servo of side 0 to 5 of a box whose first side is wall `first`.
 void dem_wall_servo_of_side(dem_wall_def *side, const wall_text *text, int index, uint32_t first);
 
+/// A wall for the solid generator sphere of an inlet; its name may be that of another wall.
+dem_status dem_wall_add_generator(dem_scene_reader *r, const dem_inlet_def *inlet);
+
 /// Puts numbers for the names of walls that servos refer to. `v`: all walls.
 dem_status dem_wall_find_names(dem_scene_reader *r, const dem_scene_value *v);
 

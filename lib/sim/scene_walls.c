@@ -170,20 +170,40 @@ static const dem_field wall_table[] = {
 };
 const dem_fields dem_wall_fields = DEM_FIELDS(wall_table);
 
-static dem_status add_wall(dem_scene_reader *r, const dem_scene_value *v, const dem_wall_def *wall,
-                           dem_wall_source source)
+static dem_status keep_wall(dem_scene_reader *r, const dem_wall_def *wall, dem_wall_source source)
 {
     struct dem_scene_owner *o = r->owner;
-    for (size_t i = 0; i < o->wall_count; i++)
-        if (strcmp(o->walls[i].name, wall->name) == 0)
-            return dem_scene_refuse(r, v, "rename one", "there is a wall \"%.60s\" already, as a side of a box",
-                                    wall->name);
     if (!dem_grow(&o->walls, &o->wall_capacity, o->wall_count, sizeof *o->walls) ||
         !dem_grow(&o->wall_sources, &o->source_capacity, o->wall_count, sizeof *o->wall_sources))
         return dem_fail_memory(r->error);
     o->wall_sources[o->wall_count] = source;
     o->walls[o->wall_count++] = *wall;
+    r->scene->walls = o->walls;
+    r->scene->wall_count = o->wall_count;
     return DEM_OK;
+}
+
+static dem_status add_wall(dem_scene_reader *r, const dem_scene_value *v, const dem_wall_def *wall,
+                           dem_wall_source source)
+{
+    for (size_t i = 0; i < r->owner->wall_count; i++)
+        if (strcmp(r->owner->walls[i].name, wall->name) == 0)
+            return dem_scene_refuse(r, v, "rename one", "there is a wall \"%.60s\" already, as a side of a box",
+                                    wall->name);
+    return keep_wall(r, wall, source);
+}
+
+dem_status dem_wall_add_generator(dem_scene_reader *r, const dem_inlet_def *inlet)
+{
+    dem_wall_def wall = {.name = inlet->name,
+                         .kind = DEM_WALL_SPHERE,
+                         .material = inlet->material,
+                         .point = inlet->centre,
+                         .normal = {0, 0, 1},
+                         .radius = inlet->radius,
+                         .outside = true,
+                         .generator = true};
+    return keep_wall(r, &wall, (dem_wall_source){.axis = {0, 0, 1}});
 }
 
 // x-, x+, y-, ... with normals into the box
@@ -265,8 +285,5 @@ dem_status dem_section_walls(dem_scene_reader *r, const dem_scene_value *v, cons
         dem_scene_value member = dem_scene_member(v, name);
         DEM_TRY(read_wall(r, &member, field, name));
     }
-    DEM_TRY(dem_wall_find_names(r, v));
-    r->scene->walls = r->owner->walls;
-    r->scene->wall_count = r->owner->wall_count;
-    return DEM_OK;
+    return dem_wall_find_names(r, v);
 }

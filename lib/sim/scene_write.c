@@ -405,6 +405,9 @@ static void put_inlet(dem_json_writer *w, const dem_scene *scene, const dem_inle
         dem_json_open_object(w, "sphere");
         put_vec(w, "centre", inlet->centre);
         dem_json_put_number(w, "radius", inlet->radius);
+        dem_json_put_bool(w, "solid", inlet->solid);
+        if (inlet->solid)
+            dem_json_put_string(w, "material", material_of(scene, inlet->material));
         dem_json_close(w, '}');
     }
     put_mix(w, scene, inlet->mix, inlet->mix_count, inlet->share_by_mass);

@@ -173,6 +173,8 @@ dem_status dem_scene_put_walls(dem_json_writer *w, const dem_scene *scene, dem_e
     open_map(w, "walls");
     for (size_t i = 0; i < scene->wall_count; i++) {
         const dem_wall_def *wall = &scene->walls[i];
+        if (wall->generator)
+            continue;
         if (wall->kind == DEM_WALL_MESH && !wall->mesh_file)
             return dem_fail(error, DEM_USAGE,
                             "the mesh of wall \"%.60s\" is in no file; write it and name it in mesh_file",

@@ -89,8 +89,12 @@ typedef struct dem_pairs {
 typedef struct dem_segment {
     size_t begin, end, capacity;                   ///< multiples of 8
     size_t slot_begin, slot_count, slot_capacity;  ///< momenta for bodies of other domains
-    size_t across;  ///< blocks that neighbours in the list are dealt to
-    bool dirty, fresh;  ///< fresh: the list has changed, and runs are not known yet (soft)
+    size_t across;       ///< blocks that neighbours in the list are dealt to
+    uint32_t idle;       ///< places without a contact
+    uint32_t spare;      ///< places that are left idle when the list is rebuilt
+    uint64_t built;      ///< step in which it was
+    uint32_t changed;    ///< 1 + index of the last fresh result that changes it; 0: none
+    bool dirty, fresh;   ///< dirty: to be rebuilt; fresh: the list has changed, and runs are not known yet (soft)
 } dem_segment;
 
 typedef struct dem_contacts {
@@ -115,7 +119,8 @@ typedef struct dem_fresh {
     size_t begin, count;  ///< in the candidates of `thread`
     double slack;         ///< path that may be used up before it is looked at again [m]
     float normal[3];
-    bool changed;  ///< the set of candidates is another one
+    bool changed;   ///< the set of candidates is another one
+    uint32_t next;  ///< 1 + index of the one before that changes the list of the same segment; 0: none
 } dem_fresh;
 
 typedef enum dem_pass {
@@ -157,6 +162,9 @@ typedef struct dem_views {
     dem_quat *orientation;
     dem_contact *contacts;
     size_t contact_count, contact_capacity;
+    bool contacts_listed;  ///< since the last measure
+    double passed;         ///< largest overlap with a wall over the sphere's radius, now [-]
+    uint32_t passed_body, passed_wall;
     dem_wall_view *walls;
     dem_figures figures;
     dem_contact_record *records;

@@ -59,6 +59,7 @@ static dem_status make_wall(const dem_ctx *ctx, const dem_wall_def *def, dem_wal
                        .motion = dem_wall_motion_of(def),
                        .servo = def->servo,
                        .wear = def->wear,
+                       .generator = def->generator,
                        .surface = dem_surface_of(def),
                        .orientation = {1, 0, 0, 0}};
     bool owned = dem_wall_motion_own(&wall->motion);

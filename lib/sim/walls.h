@@ -23,6 +23,7 @@ typedef struct dem_wall {
     dem_wear_def wear;
     double *worn;  ///< [worn_count] by triangle as given, or of the whole [m^3] (wear)
     size_t worn_count;
+    bool generator;        ///< it is a generator sphere, which is in no inlet's way
     double travel, speed;  ///< of a servo, along its direction, now [m], [m/s]
     bool moves;            ///< its surface has a velocity
     bool sweeps;           ///< ... and its shape does not stay in place

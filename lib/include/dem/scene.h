@@ -210,13 +210,16 @@ typedef enum dem_inlet_kind { DEM_INLET_BOX, DEM_INLET_SPHERE } dem_inlet_kind;
 ///
 /// In a box a body appears at a random place and is free at once. In a generator sphere it appears with its centre of
 /// mass at the sphere's and keeps its velocity and spin, whatever it meets, until it is wholly outside; the next one
-/// comes after that.
+/// comes after that. To free bodies generator spheres are solid where a wall stands for them, see
+/// dem_wall_def.generator.
 typedef struct dem_inlet_def {
     const char *name;
     dem_inlet_kind kind;
     dem_vec3 low, high;  ///< of a box, which holds every sphere of a body as it appears [m]
     dem_vec3 centre;     ///< of a generator sphere [m]
     double radius;       ///< of a generator sphere, not less than that of the largest body [m]
+    bool solid;          ///< the scene has a wall for this sphere, written with the inlet
+    uint32_t material;   ///< of that wall
     const dem_mix_def *mix;
     size_t mix_count;
     bool share_by_mass;
@@ -349,6 +352,7 @@ typedef struct dem_wall_def {
     dem_vec3 axis;         ///< unit, that oscillations and table turn about; along `spin` where that is not 0
     dem_servo_def servo;   ///< comes on top, too
     dem_wear_def wear;     ///< not of planes and cylinders without an end
+    bool generator;        ///< it is a generator sphere: in no inlet's way, and no body is freed before it is out of it
 } dem_wall_def;
 
 typedef enum dem_leaving { DEM_LEAVING_ERROR, DEM_LEAVING_IGNORE, DEM_LEAVING_DELETE } dem_leaving;
