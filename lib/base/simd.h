@@ -640,6 +640,14 @@ DEM_INLINE wide wide_rsqrt(wide a)
     return wide_roots(a, &root);
 }
 
+/// sqrt(a) of a >= 0, likewise, but that of nothing is 1e-150; and 1 / sqrt(a).
+DEM_INLINE wide wide_root(wide a, wide *inverse)
+{
+    wide root;
+    *inverse = wide_roots(a + wide_all(1e-300), &root);
+    return root;
+}
+
 /// 2^k of whole -1022 <= k <= 1023: the last bits of 1.5 2^52 + x are those of the whole number x.
 DEM_INLINE wide wide_power_of_two(wide k)
 {

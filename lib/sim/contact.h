@@ -306,7 +306,7 @@ DEM_INLINE void put_state(const dem_features f, contact_batch *batch, size_t g, 
         put3(batch, AT_STRETCHED, g, s->trial.stretched);
     if (f.mindlin)
         wide_store(batch->at[AT_OLD_SLIDE] + g, s->trial.old_stiffness);
-    if (!slides_alike(f))
+    if (!alike(f))
         wide_store(batch->at[AT_SLIDE] + g, s->trial.stiffness);
 }
 
@@ -332,7 +332,7 @@ DEM_INLINE contact_state get_state(const dem_features f, const contact_numbers *
     t->stretched = f.mindlin ? get3(batch, AT_STRETCHED, g) : along3(t->start, given->step.step, t->slip);
     if (f.mindlin)
         t->old_stiffness = wide_load(batch->at[AT_OLD_SLIDE] + g);
-    if (slides_alike(f))
+    if (alike(f))
         t->stiffness = law[LAW_SLIDE_STIFFNESS] + law[LAW_SLIDE_RATIO] * law[LAW_STIFFNESS];
     else
         t->stiffness = wide_load(batch->at[AT_SLIDE] + g);

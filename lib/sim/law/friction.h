@@ -87,7 +87,9 @@ DEM_INLINE friction_trial friction_try(const dem_features f, const wide *law, co
     t.stiffness = t.old_stiffness = law[LAW_SLIDE_STIFFNESS] + law[LAW_SLIDE_RATIO] * n->stiffness;
     if (f.mindlin) {
         wide old_radius = radius_before(f, n, reduced, overlap, overlap + vn * s->step);
-        wide kept = old_radius / wide_max(n->radius, wide_all(1e-300));
+        wide kept = old_radius * n->per_radius;
+        if (f.jkr)
+            kept = old_radius / wide_max(n->radius, wide_all(1e-300));
         t.stiffness = t.stiffness + law[LAW_SLIDE_HERTZ] * n->radius;
         t.old_stiffness = t.old_stiffness + law[LAW_SLIDE_HERTZ] * old_radius;
         spring = scale3(spring, wide_max(law[LAW_KEEP_LEAST], wide_min(law[LAW_KEEP_MOST], kept)));
@@ -98,8 +100,11 @@ DEM_INLINE friction_trial friction_try(const dem_features f, const wide *law, co
     if (f.slide_damping) {
         if (f.rate)
             t.damping = law[LAW_SLIDE_RATE] * mass->mass;
+        wide zeta = s->slide_zeta, inverse;
+        if (f.restitution && !alike(f))
+            zeta = law[LAW_SLIDE_ZETA] * wide_root(t.stiffness, &inverse);
         if (f.restitution)
-            t.damping = wide_fma(law[LAW_SLIDE_ZETA] * wide_sqrt(t.stiffness), mass->root, t.damping);
+            t.damping = wide_fma(zeta, mass->root, t.damping);
         more = more + t.damping;
     }
     t.force = along3(scale3(spring, t.stiffness), more, slip);
@@ -123,7 +128,7 @@ DEM_INLINE friction_law friction(const dem_features f, const wide *law, const la
                                  wide_mask on)
 {
     wide zero = wide_all(0), stiffness = t->stiffness, per_stiffness = s->per_slide;
-    if (!slides_alike(f))
+    if (!alike(f))
         per_stiffness = wide_all(1) / stiffness;
     wide3 force = scale3(t->force, t->part), left = force;
     if (f.slide_damping) {

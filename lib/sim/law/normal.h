@@ -12,6 +12,7 @@ typedef struct normal_law {
     wide stiffness;  ///< tangent of the spring [N/m]
     wide damping;    ///< of the dashpot [N s/m]
     wide radius;     ///< sqrt(R* overlap), of the contact [m] (Hertz only)
+    wide per_radius; ///< [1/m] (Hertz, not JKR)
     wide spread;     ///< d radius / d overlap [-] (JKR only)
     wide grip;       ///< force by which friction is measured: what JKR pulls counts twice at most [N] (JKR only)
     wide energy;     ///< of the spring [J] (JKR only)
@@ -21,23 +22,32 @@ typedef struct normal_law {
 typedef struct law_step {
     wide step, per_step;  ///< [s], [1/s]; at the start nothing has passed, and 1 / step is that of the step to come
     wide rate;            ///< of the dashpot, for this step: see normal_damp [1/s] (rate)
-    wide per_slide;       ///< 1 / tangential stiffness, where this is the law's alone: see slides_alike [m/N]
+    // where stiffnesses are the law's alone: see alike
+    wide per_slide;               ///< 1 / tangential stiffness [m/N]
+    wide push_zeta, slide_zeta;   ///< z sqrt(stiffness), along the normal and tangential [sqrt(N/m)] (restitution)
 } law_step;
 
-/// Whether the tangential stiffness is the same for all contacts of a law.
-DEM_INLINE bool slides_alike(const dem_features f)
+/// Whether stiffnesses are the same for all contacts of a law.
+DEM_INLINE bool alike(const dem_features f)
 {
-    return f.friction && f.linear && !f.young && !f.hertz && !f.jkr && !f.mindlin;
+    return f.linear && !f.young && !f.hertz && !f.jkr && !f.mindlin;
 }
 
 DEM_INLINE law_step law_step_of(const dem_features f, const wide *law, double last_step, double next_step)
 {
     wide step = wide_all(last_step), one = wide_all(1);
-    law_step s = {step, wide_all(1 / (last_step > 0 ? last_step : next_step)), wide_all(0), wide_all(0)};
+    law_step s = {.step = step, .per_step = wide_all(1 / (last_step > 0 ? last_step : next_step))};
     if (f.rate)
         s.rate = law[LAW_RATE] / wide_fma(wide_all(0.25) * step, law[LAW_RATE], one);
-    if (slides_alike(f))
-        s.per_slide = one / (law[LAW_SLIDE_STIFFNESS] + law[LAW_SLIDE_RATIO] * law[LAW_STIFFNESS]);
+    if (!alike(f))
+        return s;
+    wide slide = law[LAW_SLIDE_STIFFNESS] + law[LAW_SLIDE_RATIO] * law[LAW_STIFFNESS];
+    if (f.friction)
+        s.per_slide = one / slide;
+    if (f.restitution)
+        s.push_zeta = law[LAW_ZETA] * wide_sqrt(law[LAW_STIFFNESS]);
+    if (f.restitution && f.friction)
+        s.slide_zeta = law[LAW_SLIDE_ZETA] * wide_sqrt(slide);
     return s;
 }
 
@@ -69,7 +79,7 @@ DEM_INLINE normal_law normal_elastic(const dem_features f, const wide *law, cons
                                      wide reduced, wide area_length)
 {
     wide zero = wide_all(0);
-    normal_law n = {zero, zero, zero, zero, zero, zero, zero, zero};
+    normal_law n = {zero, zero, zero, zero, zero, zero, zero, zero, zero};
     if (f.linear) {
         n.stiffness = law[LAW_STIFFNESS];
         if (f.young)
@@ -87,7 +97,7 @@ DEM_INLINE normal_law normal_elastic(const dem_features f, const wide *law, cons
         // pull-off 3/2 pi w R*
         n.grip = wide_all(1.5) * law[LAW_JKR] * reduced;
     } else if (f.hertz) {
-        n.radius = wide_sqrt(reduced * wide_max(overlap, zero));
+        n.radius = wide_root(reduced * wide_max(overlap, zero), &n.per_radius);
         wide tangent = law[LAW_HERTZ] * n.radius;
         n.elastic = n.elastic + wide_all(2.0 / 3) * (tangent * overlap);
         n.stiffness = n.stiffness + tangent;
@@ -108,7 +118,8 @@ DEM_INLINE wide radius_before(const dem_features f, const normal_law *n, wide re
     if (f.jkr)
         // by its slope, which has no bound where surfaces part
         return wide_max(wide_min(wide_fma(n->spread, before - overlap, n->radius), n->radius + n->radius), wide_all(0));
-    return wide_sqrt(reduced * wide_max(before, wide_all(0)));
+    wide inverse;
+    return wide_root(reduced * wide_max(before, wide_all(0)), &inverse);
 }
 
 /// Dashpot on the velocity `vn` of separation half a step ago [m/s].
@@ -128,7 +139,10 @@ DEM_INLINE void normal_damp(const dem_features f, const wide *law, const law_ste
         c = s->rate * m->mass;
     }
     if (f.restitution) {
-        wide own = law[LAW_ZETA] * wide_sqrt(n->stiffness) * m->root;
+        wide zeta = s->push_zeta, inverse;
+        if (!alike(f))
+            zeta = law[LAW_ZETA] * wide_root(n->stiffness, &inverse);
+        wide own = zeta * m->root;
         n->damping = n->damping + own;
         c = c + own / wide_fma(quarter, own * m->inverse, wide_all(1));
     }
