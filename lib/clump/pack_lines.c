@@ -136,7 +136,8 @@ typedef struct columns_of {
 static void build_columns(void *user, int axis)
 {
     columns_of *c = user;
-    c->status[axis] = dem_columns_build(c->grain, axis, c->step, margin, c->offsets, &c->columns[axis], &c->error[axis]);
+    c->status[axis] =
+        dem_columns_build(c->grain, axis, c->step, margin, c->offsets, &c->columns[axis], &c->error[axis]);
 }
 
 dem_status dem_lines_build(const dem_pack_grain *grain, const dem_pack_kernels *kernels, double step,
