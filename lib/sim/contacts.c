@@ -274,11 +274,22 @@ static void take_history(const dem_world *w, const dem_segment *s, const dem_pai
     item->old = (uint32_t)(at - s->begin) + 1;
 }
 
-// what the first one of the pair remembers stands for all
-static void take_soft_history(const dem_segment *s, const dem_pair *p, entry *item)
+static bool same_parts(const dem_soft *soft, uint32_t a, uint32_t b, uint32_t other_a, uint32_t other_b)
 {
-    if (p->count)
-        item->old = (uint32_t)(segment_place(s, p->start) - s->begin) + 1;
+    return soft_part(soft, a) == soft_part(soft, other_a) && soft_part(soft, b) == soft_part(soft, other_b);
+}
+
+// what the first one of a pair of parts remembers stands for all
+static void take_soft_history(const dem_world *w, const dem_segment *s, const dem_pair *p, entry *item)
+{
+    const dem_contact_columns *c = &w->contacts.columns;
+    for (size_t k = 0; k < p->count; k++) {
+        size_t at = segment_place(s, p->start + k);
+        if (same_parts(&w->soft, item->sphere_a, item->sphere_b, c->sphere_a[at], c->sphere_b[at])) {
+            item->old = (uint32_t)(at - s->begin) + 1;
+            return;
+        }
+    }
 }
 
 static bool make_room(list *l, size_t more)
@@ -332,8 +343,9 @@ static bool list_pair(const dem_world *w, const dem_segment *s, dem_pair *p, con
                           .law = w->laws.table[a->material * w->laws.material_count + b->material]};
             if (!w->features.soft)
                 take_history(w, s, p, &item, &old);
-            else if (i == 0)
-                take_soft_history(s, p, &item);
+            else if (i == 0 || !same_parts(&w->soft, item.sphere_a, item.sphere_b, l->items[l->count - 1].sphere_a,
+                                           l->items[l->count - 1].sphere_b))
+                take_soft_history(w, s, p, &item);
             l->items[l->count++] = item;
         }
     }

@@ -106,6 +106,11 @@ static dem_vec3 normal_of(const soft_job *job, size_t k)
     return v3(row[ROW_NORMAL], row[ROW_NORMAL + 1], row[ROW_NORMAL + 2]);
 }
 
+static uint32_t part_of(const soft_job *job, size_t k)
+{
+    return soft_part(&job->w->soft, job->contacts->columns.sphere_a[job->s->begin + k]);
+}
+
 // makes a patch of those of the contacts [begin, end) of a mesh that belong to a group: copies of their rows
 static void make_group(soft_job *job, size_t begin, size_t end, const dem_soft_leaders *leaders, int group)
 {
@@ -115,7 +120,7 @@ static void make_group(soft_job *job, size_t begin, size_t end, const dem_soft_l
     bool some = false;
     for (size_t k = begin; k < end; k++) {
         double d = work->overlap[k];
-        if (!(d > DEM_SOFT_APART) || soft_group(leaders, normal_of(job, k)) != group)
+        if (!(d > DEM_SOFT_APART) || soft_group(leaders, normal_of(job, k), part_of(job, k)) != group)
             continue;
         memcpy(work->rows + DEM_ROW * job->rows, work->rows + DEM_ROW * k, DEM_ROW * sizeof *work->rows);
         work->place[job->rows++] = (uint32_t)k;
@@ -151,16 +156,17 @@ static void make_groups(soft_job *job, size_t begin, size_t end)
     dem_soft_leaders leaders = {.count = 0};
     for (bool some = true; some && leaders.count < DEM_SOFT_LEADERS;) {
         double deepest = -DEM_SOFT_REACH * job->w->soft.tau;
-        dem_vec3 normal = v3(0, 0, 0);
-        some = false;
+        size_t leader = end;
         for (size_t k = begin; k < end; k++)
-            if (job->work->overlap[k] > deepest && soft_group(&leaders, normal_of(job, k)) < 0) {
+            if (job->work->overlap[k] > deepest && soft_group(&leaders, normal_of(job, k), part_of(job, k)) < 0) {
                 deepest = job->work->overlap[k];
-                normal = normal_of(job, k);
-                some = true;
+                leader = k;
             }
-        if (some)
-            leaders.normal[leaders.count++] = normal;
+        some = leader < end;
+        if (some) {
+            leaders.normal[leaders.count] = normal_of(job, leader);
+            leaders.part[leaders.count++] = part_of(job, leader);
+        }
     }
     for (int group = -1; group < leaders.count; group++)
         make_group(job, begin, end, &leaders, group);
@@ -202,6 +208,7 @@ typedef struct soft_eight {
     uint32_t a[DEM_BLOCK_LANES], b[DEM_BLOCK_LANES], law[DEM_BLOCK_LANES], shift[DEM_BLOCK_LANES];
     uint32_t first[DEM_BLOCK_LANES], members[DEM_BLOCK_LANES];
     bool remembers[DEM_BLOCK_LANES];
+    double share[DEM_BLOCK_LANES], stiffening[DEM_BLOCK_LANES];
     double sum[DEM_BLOCK_LANES], deepest[DEM_BLOCK_LANES], depth[DEM_BLOCK_LANES], radius[2][DEM_BLOCK_LANES];
     double kept[KEPT][DEM_BLOCK_LANES];
     double momentum[2][DEM_BLOCK_LANES][DEM_ROW] __attribute__((aligned(64)));
@@ -222,6 +229,10 @@ static void fill_lane(const soft_job *job, soft_eight *e, size_t i)
     e->members[i] = p->count;
     e->deepest[i] = p->deepest;
     e->remembers[i] = job->attached[p->memory] > 0;
+    if (job->work->share) {
+        e->share[i] = job->work->share[2 * (p - job->work->patches)];
+        e->stiffening[i] = job->work->share[2 * (p - job->work->patches) + 1];
+    }
     e->radius[0][i] = job->w->soft.radius[e->a[i]];
     e->radius[1][i] = wall ? e->radius[0][i] : job->w->soft.radius[e->b[i]];
 }
@@ -234,7 +245,7 @@ static void fill_idle(const soft_job *job, soft_eight *e, size_t i)
     e->law[i] = e->shift[i] = e->first[i] = e->members[i] = 0;
     e->remembers[i] = false;
     e->deepest[i] = -DEM_SOFT_REACH * job->w->soft.tau;
-    e->radius[0][i] = e->radius[1][i] = 1;
+    e->share[i] = e->stiffening[i] = e->radius[0][i] = e->radius[1][i] = 1;
 }
 
 // what contacts remember that do not touch is 0
@@ -309,7 +320,12 @@ DEM_INLINE soft_spot load_spot(const dem_features f, const soft_job *job, const 
                       .tau = w->soft.tau,
                       .last_step = w->last_step,
                       .next_step = w->next_step,
+                      .parted = job->work->share != NULL,
                       .wall = wall};
+    if (spot.parted) {
+        spot.share = wide_load(e->share + l);
+        spot.stiffening = wide_load(e->stiffening + l);
+    }
     if (wall)
         spot.reduced = spot.area = a;
     for (int k = 0; f.mixed && k < LAW_MORE; k += 8)
@@ -530,6 +546,8 @@ static void segment(dem_world *w, size_t which, int form, double kick, dem_soft_
     else
         find_patches(&job);
     sort_patches(&job);
+    if (w->soft.part)
+        dem_soft_couple(w, contacts, which, form, work, job.patches);
     if (f.reaction && form >= 0 && !records)
         clear_reactions(&job);
     for (size_t from = 0; from < job.patches; from += DEM_BLOCK_LANES)

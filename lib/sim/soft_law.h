@@ -52,7 +52,8 @@ typedef struct soft_spot {
     wide law[LAW_MORE];
     wide reduced, area;  // R* [m]; R_min^2 / (R_a + R_b) [m]
     double tau, last_step, next_step;
-    bool wall;
+    wide share, stiffening;  // of the parts, where there are some
+    bool wall, parted;
 } soft_spot;
 
 // what the parts of the law hand on to each other
@@ -132,6 +133,9 @@ DEM_INLINE wide soft_strain(const soft_spot *spot, const soft_side *side, const 
     return wide_all(spot->wall ? 1 : 2) * h * wide_fma(h, taken, two * damping);
 }
 
+/// Parts that share what they bear, see soft_couple.c, do so with normal force and dashpot. Springs along the surface
+/// stay as they are, for their energy must not come and go with the share.
+///
 /// Patches that touch, and those that have just parted: then there is no force, but something may be lost.
 DEM_INLINE soft_result soft_act(const dem_features f, const soft_spot *spot, const soft_lanes *p, const soft_whole *s,
                                 soft_memory *m)
@@ -147,6 +151,13 @@ DEM_INLINE soft_result soft_act(const dem_features f, const soft_spot *spot, con
         .mass = contact_mass_of(f, inverse), .uneven = zero, .slide = zero, .slide_damping = zero};
     normal_law normal = normal_elastic(f, spot->law, NULL, s->depth, spot->reduced, spot->area);
     normal_damp(f, spot->law, &normal, &d.mass, s->depth, s->speed, wide_all(spot->last_step), wide_all(1 / step));
+    wide shared = normal.stiffness;
+    if (spot->parted) {
+        shared = shared * spot->share;
+        normal.elastic = normal.elastic * spot->share;
+        normal.force = normal.force * spot->share;
+        normal.damping = normal.damping * spot->share;
+    }
     d.stiffness = normal.stiffness;
     d.damping = normal.damping;
     d.elastic = wide_or_zero(on, normal.elastic);
@@ -156,7 +167,7 @@ DEM_INLINE soft_result soft_act(const dem_features f, const soft_spot *spot, con
     // of the linear part F = k d the half, of Hertz' F = 2/3 k d two fifths
     wide linear = normal.elastic;
     if (f.hertz)
-        linear = wide_all(3) * normal.elastic - wide_all(2) * d.stiffness * s->depth;
+        linear = wide_all(3) * normal.elastic - wide_all(2) * shared * s->depth;
     wide mean = wide_fma(wide_all(0.5), linear, wide_all(0.4) * (normal.elastic - linear));
     out.elastic_normal = wide_or_zero(on, mean * s->depth);
     if (f.ledger && (f.rate || f.restitution)) {
@@ -175,6 +186,8 @@ DEM_INLINE soft_result soft_act(const dem_features f, const soft_spot *spot, con
         out.force = plus3(out.force, drag);
         out.moment = plus3(out.moment, along3(cross3(s->point, drag), turning, s->n));
     }
+    if (spot->parted)
+        d.stiffness = d.stiffness * spot->stiffening;
     if (f.watch) {
         wide per_tau = wide_max(out.net, d.elastic) * wide_all(1 / spot->tau);
         out.strain_a = soft_strain(spot, &p->a, s, &d, per_tau, s->share_a, s->spread_a);

@@ -66,19 +66,25 @@ static dem_touch touch_of(const dem_world *w, const patch_members *m, size_t k)
     return m->form < 0 ? dem_touch_of_pair(w, at) : dem_touch_of_wall(w, (dem_wall_form)m->form, at);
 }
 
-static bool belongs(const patch_members *m, const dem_touch *t)
+static uint32_t part_of(const dem_world *w, const patch_members *m, const dem_touch *t)
 {
-    return m->form != DEM_FORM_MESH || soft_group(&m->leaders, t->normal) == m->group;
+    return soft_part(&w->soft, m->contacts->columns.sphere_a[t->place]);
 }
 
-static double deepest_of(const dem_world *w, const patch_members *m, dem_vec3 *normal)
+static bool belongs(const dem_world *w, const patch_members *m, const dem_touch *t)
+{
+    return m->form != DEM_FORM_MESH || soft_group(&m->leaders, t->normal, part_of(w, m, t)) == m->group;
+}
+
+static double deepest_of(const dem_world *w, const patch_members *m, dem_vec3 *normal, uint32_t *part)
 {
     double deepest = -INFINITY;
     for (size_t k = m->begin; k < m->end; k++) {
         dem_touch t = touch_of(w, m, k);
-        if (t.overlap > deepest && belongs(m, &t)) {
+        if (t.overlap > deepest && belongs(w, m, &t)) {
             deepest = t.overlap;
             *normal = t.normal;
+            *part = part_of(w, m, &t);
         }
     }
     return deepest;
@@ -91,7 +97,7 @@ static void gather(const dem_world *w, const patch_members *m, double deepest, p
     double tau = w->soft.tau, square = 0;
     for (size_t k = m->begin; k < m->end; k++) {
         dem_touch t = touch_of(w, m, k);
-        if (t.overlap <= -DEM_SOFT_REACH * tau || !belongs(m, &t))
+        if (t.overlap <= -DEM_SOFT_REACH * tau || !belongs(w, m, &t))
             continue;
         double weight = soft_weight(&w->soft, c->a[t.place], c->sphere_a[t.place]);
         if (m->form < 0)
@@ -145,7 +151,8 @@ static void add_tangents(const dem_world *w, const patch_members *m, const patch
 static void add_patch(const dem_world *w, const patch_members *m, bool listed, double k[6][6], double c[6][6])
 {
     dem_vec3 normal;
-    double tau = w->soft.tau, deepest = deepest_of(w, m, &normal);
+    uint32_t part;
+    double tau = w->soft.tau, deepest = deepest_of(w, m, &normal, &part);
     if (!(deepest > -DEM_SOFT_REACH * tau))
         return;
     patch_problem p;
@@ -163,13 +170,14 @@ static void add_patch(const dem_world *w, const patch_members *m, bool listed, d
     double reduced = wall ? ra : ra * rb / (ra + rb), area = wall ? ra : least * least / (ra + rb);
     double radius = sqrt(reduced * depth), kn = law_stiffness(law, area, radius), times = wall ? 1 : 2;
     double kt = law_slide_stiffness(law, area, radius);
+    double stiffening = dem_soft_stiffening(w, m->row[0], m->row[1], m->form);
     double force = kn * depth - law[LAW_HERTZ] * radius * depth / 3, per_tau = force / tau;
     double share = norm2(&p.mean[0]) + (wall ? 0 : norm2(&p.mean[1]));
     double mass = w->features.local_mass ? share : 0;
     for (int side = 0; side < (wall ? 1 : 2) && !w->features.local_mass; side++)
         mass += w->bodies.inertia[DEM_ROW * m->row[side]];
     mass = 1 / larger(mass, DEM_SOFT_HEAVIEST);
-    add_outer(k, times * (kn - per_tau), &p.mean[0]);
+    add_outer(k, times * (stiffening * kn - per_tau), &p.mean[0]);
     for (int i = 0; i < 6; i++)
         for (int j = 0; j < 6; j++)
             k[i][j] += times * per_tau * p.spread[i][j] / p.sum;
@@ -190,10 +198,22 @@ static void add_patch(const dem_world *w, const patch_members *m, bool listed, d
 static void add_groups(const dem_world *w, patch_members *m, double k[6][6], double c[6][6])
 {
     dem_vec3 normal;
-    for (m->group = -1; m->leaders.count < DEM_SOFT_LEADERS && deepest_of(w, m, &normal) > -w->ahead;)
+    uint32_t part;
+    for (m->group = -1; m->leaders.count < DEM_SOFT_LEADERS && deepest_of(w, m, &normal, &part) > -w->ahead;) {
+        m->leaders.part[m->leaders.count] = part;
         m->leaders.normal[m->leaders.count++] = normal;
+    }
     for (m->group = 0; m->group < m->leaders.count; m->group++)
         add_patch(w, m, false, k, c);
+}
+
+// where the run of the contact `k` ends
+static size_t run_end(const dem_world *w, const patch_members *m, size_t k, size_t end)
+{
+    size_t first = segment_place(m->s, k);
+    while (++k < end && dem_soft_same_run(w, m->contacts, first, segment_place(m->s, k), m->form))
+        continue;
+    return k;
 }
 
 static void add_pairs(const dem_world *w, size_t row, bool listed, double k[6][6], double c[6][6])
@@ -206,15 +226,17 @@ static void add_pairs(const dem_world *w, size_t row, bool listed, double k[6][6
         patch_members m = {.contacts = &w->contacts,
                            .s = &w->contacts.segments[pair->a / DEM_SEGMENT],
                            .form = -1,
-                           .begin = pair->start,
-                           .end = pair->start + pair->count,
                            .row = {first ? pair->a : pair->b, first ? pair->b : pair->a},
                            .turned = !first};
         if (w->periodic) {
             const double *shift = w->shifts + 4 * (size_t)pair->image;
             m.shift = v3(shift[0], shift[1], shift[2]);
         }
-        add_patch(w, &m, listed, k, c);
+        size_t end = pair->start + pair->count;
+        for (m.begin = pair->start; m.begin < end; m.begin = m.end) {
+            m.end = run_end(w, &m, m.begin, end);
+            add_patch(w, &m, listed, k, c);
+        }
     }
 }
 
@@ -227,20 +249,14 @@ static void add_walls(const dem_world *w, size_t row, bool listed, double k[6][6
         const dem_segment *s = &contacts->segments[row / DEM_SEGMENT];
         size_t size = s->end - s->begin;
         for (size_t begin = 0, end; begin < size; begin = end) {
-            uint32_t a = contacts->columns.a[segment_place(s, begin)];
-            uint32_t wall = contacts->columns.sphere_b[segment_place(s, begin)];
-            for (end = begin + 1; end < size; end++)
-                if (contacts->columns.a[segment_place(s, end)] != a ||
-                    contacts->columns.sphere_b[segment_place(s, end)] != wall)
-                    break;
-            if (a != row)
-                continue;
             patch_members m = {.contacts = contacts,
                                .s = s,
                                .form = form,
                                .begin = begin,
-                               .end = end,
                                .row = {(uint32_t)row, (uint32_t)row}};
+            m.end = end = run_end(w, &m, begin, size);
+            if (contacts->columns.a[segment_place(s, begin)] != row)
+                continue;
             if (form == DEM_FORM_MESH)
                 add_groups(w, &m, k, c);
             else
