@@ -1,6 +1,6 @@
 # The hot loops of packing, of runs and of mesh walls, compiled once more for each newer instruction set; which runs is
 # chosen at start.
-set(kernels_of_demshape lib/clump/pack_kernels.c)
+set(kernels_of_demshape lib/clump/pack_kernels.c lib/clump/pack_line_kernels.c)
 set(kernels_of_dem lib/sim/kernels.c lib/sim/mesh_spots.c lib/sim/soft_kernels.c)
 if(DEM_X86)
   foreach(level v3 v4)

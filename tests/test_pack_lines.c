@@ -156,12 +156,57 @@ static void lines_give_the_same_bits_on_every_instruction_set_and_for_any_number
     close_fixture(&f);
 }
 
+static dem_ball moved(dem_ball ball, dem_random *r, double most)
+{
+    double step = most * random_uniform(r), swell = (most - step) * (2 * random_uniform(r) - 1);
+    dem_vec3 d = v3_unit(v3(random_uniform(r) - 0.5, random_uniform(r) - 0.5, random_uniform(r) - 0.5));
+    return (dem_ball){v3_along(ball.centre, step, d), ball.radius + swell};
+}
+
+// hidden balls are left out of the lists only as long as they cannot come out
+static void lists_that_balls_have_moved_under_give_what_new_ones_give(void **state)
+{
+    (void)state;
+    enum { MANY = 160, PLACES = 6, FAR = 4 };  // at place FAR they have gone too far for the lists
+    fixture f;
+    open_fixture(&f);
+    float columns[4][MANY];
+    dem_ball start[MANY], balls[MANY];
+    dem_ball_columns view = {.x = columns[0], .y = columns[1], .z = columns[2], .r = columns[3]};
+    dem_random r = random_stream(12, 0);
+    for (int i = 0; i < MANY; i++) {
+        double x = random_uniform(&r) - 0.5, y = random_uniform(&r) - 0.5, z = random_uniform(&r) - 0.5;
+        start[i] = (dem_ball){v3_scale(v3(x, y, z), 0.6), 0.02 + 0.18 * random_uniform(&r)};
+    }
+    const double offsets[2] = {0.38197, 0.2764};
+    dem_lines old, fresh;
+    dem_error error;
+    check_ok(dem_lines_build(&f.grain, dem_pack_kernels_choose(NULL), 0.01, offsets, MANY, NULL, &old, &error), error);
+    for (int place = 0; place < PLACES; place++) {
+        double gradient[2][MANY][4];
+        dem_line_volumes volumes[2];
+        for (int i = 0; i < MANY; i++)
+            balls[i] = place ? moved(start[i], &r, place < FAR ? 0.011 : 0.05) : start[i];
+        dem_ball_columns_set(&view, balls, MANY);
+        check_ok(dem_lines_build(&f.grain, old.kernels, 0.01, offsets, MANY, NULL, &fresh, &error), error);
+        check_ok(dem_lines_measure(&old, &view, gradient[0], &volumes[0], &error), error);
+        check_ok(dem_lines_measure(&fresh, &view, gradient[1], &volumes[1], &error), error);
+        check(old.make_lists == (place == 0 || place >= FAR));
+        check(memcmp(&volumes[0], &volumes[1], sizeof *volumes) == 0);
+        check(memcmp(gradient[0], gradient[1], sizeof *gradient) == 0);
+        dem_lines_release(&fresh);
+    }
+    dem_lines_release(&old);
+    close_fixture(&f);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(volumes_by_lines_are_the_exact_ones),
         cmocka_unit_test(the_gradient_is_that_of_finite_differences),
         cmocka_unit_test(lines_give_the_same_bits_on_every_instruction_set_and_for_any_number_of_threads),
+        cmocka_unit_test(lists_that_balls_have_moved_under_give_what_new_ones_give),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

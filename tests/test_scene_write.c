@@ -259,6 +259,41 @@ static void a_scene_made_by_hand_is_written_too(void **state)
     dem_clump_destroy(clump);
 }
 
+// the world has them; the scene still tells where they came from
+static void a_scene_forgets_bodies_of_files_and_is_written_as_before(void **state)
+{
+    (void)state;
+    dem_scene scene;
+    dem_error error;
+    dem_world *world, *whole;
+    char *before, *after;
+    check_ok(scene_read("{" SCENE_HEAD ", 'bodies': [{'shape': 'ball', 'position': [9, 0, 0]}, {'file': 'balls.csv'},\n"
+                        "{'shape': 'pair', 'position': [20, 0, 0]}]}",
+                        scene_folder(), NULL, &scene, &error),
+             error);
+    check_ok(dem_scene_resolved(&scene, &before, &error), error);
+    check_ok(dem_world_create(NULL, &scene, &whole, &error), error);
+    check(scene.bodies.count == 4);
+    check_ok(dem_world_create_spending(NULL, &scene, &world, &error), error);
+    check(scene.bodies.count == 2 && scene.bodies.bodies[1].position.x == 20);
+    check(dem_world_bodies(world).count == 4 && dem_world_hash(world) == dem_world_hash(whole));
+    check_ok(dem_scene_resolved(&scene, &after, &error), error);
+    assert_string_equal(before, after);
+    free(before);
+    free(after);
+    dem_world_destroy(world);
+    dem_world_destroy(whole);
+    dem_scene_release(&scene);
+}
+
+static int make_files(void **state)
+{
+    if (make_scene_folder(state) != 0)
+        return -1;
+    put_scene_file("balls.csv", "shape,x,y,z\nball,0,0,0\npair,0,5,0\n");
+    return 0;
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -266,6 +301,7 @@ int main(void)
         cmocka_unit_test(directions_keep_their_bits),
         cmocka_unit_test(every_default_is_written),
         cmocka_unit_test(a_scene_made_by_hand_is_written_too),
+        cmocka_unit_test(a_scene_forgets_bodies_of_files_and_is_written_as_before),
     };
-    return cmocka_run_group_tests(tests, make_scene_folder, remove_scene_folder);
+    return cmocka_run_group_tests(tests, make_files, remove_scene_folder);
 }

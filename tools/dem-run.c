@@ -129,7 +129,7 @@ static int write_report(cli_session *session, const arguments *a, const dem_scen
 static int run(cli_session *session, const arguments *a, dem_scene *scene)
 {
     dem_ctx ctx = cli_ctx(session, NULL);
-    dem_run_options options = {a->resume, a->until, (uint64_t)a->steps, (uint64_t)a->warmup};
+    dem_run_options options = {a->resume, a->until, (uint64_t)a->steps, (uint64_t)a->warmup, scene};
     dem_run_result result;
     dem_error error;
     dem_status status = dem_run(&ctx, scene, &options, &result, &error);

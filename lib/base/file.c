@@ -100,14 +100,6 @@ static dem_status cannot_write(dem_error *error, const char *path)
                        strerror(errno));
 }
 
-static dem_status write_directly(int file, const char *path, const dem_piece *pieces, size_t count, dem_error *error)
-{
-    for (size_t i = 0; i < count; i++)
-        if (!write_all(file, pieces[i].bytes, pieces[i].size))
-            return cannot_write(error, path);
-    return DEM_OK;
-}
-
 // A new file in the same folder, with the rights a new file has; its name is to be freed. Below 0: none, see errno.
 // mkstemp would make it unreadable for others, and the mask of rights cannot be read without being changed, for all
 // threads.
@@ -128,38 +120,59 @@ static int open_beside(const char *path, char **name)
     return file;
 }
 
+dem_status dem_file_begin(const char *path, dem_file_making *f, dem_error *error)
+{
+    struct stat about;
+    *f = (dem_file_making){.path = path, .file = STDOUT_FILENO, .whole = true};
+    if (strcmp(path, "-") == 0) {
+        f->path = "standard output";
+        return DEM_OK;
+    }
+    bool plain = stat(path, &about) != 0 || S_ISREG(about.st_mode);
+    f->file = plain ? open_beside(path, &f->beside) : open(path, O_WRONLY | O_CLOEXEC);
+    if (f->file >= 0)
+        return DEM_OK;
+    dem_status status = cannot_write(error, path);
+    free(f->beside);
+    f->beside = NULL;
+    return status;
+}
+
+dem_status dem_file_put(dem_file_making *f, const dem_piece *pieces, size_t count, dem_error *error)
+{
+    for (size_t i = 0; i < count && f->whole; i++)
+        f->whole = write_all(f->file, pieces[i].bytes, pieces[i].size);
+    return f->whole ? DEM_OK : cannot_write(error, f->path);
+}
+
+dem_status dem_file_end(dem_file_making *f, dem_error *error)
+{
+    if (f->file == STDOUT_FILENO)
+        return DEM_OK;
+    dem_status status = DEM_OK;
+    if (f->beside && f->whole && fsync(f->file) != 0)
+        status = cannot_write(error, f->path);
+    if (close(f->file) != 0 && f->whole && status == DEM_OK)
+        status = cannot_write(error, f->path);
+    bool good = f->whole && status == DEM_OK;
+    if (f->beside && good && rename(f->beside, f->path) != 0) {
+        status = cannot_write(error, f->path);
+        good = false;
+    }
+    if (f->beside && !good)
+        unlink(f->beside);
+    free(f->beside);
+    f->beside = NULL;
+    return status;
+}
+
 dem_status dem_file_write_pieces(const char *path, const dem_piece *pieces, size_t count, dem_error *error)
 {
-    if (strcmp(path, "-") == 0)
-        return write_directly(STDOUT_FILENO, "standard output", pieces, count, error);
-    struct stat about;
-    if (stat(path, &about) == 0 && !S_ISREG(about.st_mode)) {
-        int file = open(path, O_WRONLY | O_CLOEXEC);
-        if (file < 0)
-            return cannot_write(error, path);
-        dem_status status = write_directly(file, path, pieces, count, error);
-        if (close(file) != 0 && status == DEM_OK)
-            status = cannot_write(error, path);
-        return status;
-    }
-    char *beside;
-    int file = open_beside(path, &beside);
-    if (file < 0) {
-        dem_status failed = cannot_write(error, path);
-        free(beside);
-        return failed;
-    }
-    dem_status status = write_directly(file, path, pieces, count, error);
-    if (status == DEM_OK && fsync(file) != 0)
-        status = cannot_write(error, path);
-    if (close(file) != 0 && status == DEM_OK)
-        status = cannot_write(error, path);
-    if (status == DEM_OK && rename(beside, path) != 0)
-        status = cannot_write(error, path);
-    if (status != DEM_OK)
-        unlink(beside);
-    free(beside);
-    return status;
+    dem_file_making f;
+    DEM_TRY(dem_file_begin(path, &f, error));
+    dem_status status = dem_file_put(&f, pieces, count, error);
+    dem_status ended = dem_file_end(&f, status == DEM_OK ? error : NULL);
+    return status == DEM_OK ? ended : status;
 }
 
 dem_status dem_file_write(const char *path, const void *bytes, size_t size, dem_error *error)

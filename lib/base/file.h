@@ -20,6 +20,18 @@ typedef struct dem_piece {
 } dem_piece;
 dem_status dem_file_write_pieces(const char *path, const dem_piece *pieces, size_t count, dem_error *error);
 
+/// The same little by little, where the whole would take much memory. After a failed put: whole = false, and the end
+/// leaves what was there. Every begun file is to be ended.
+typedef struct dem_file_making {
+    const char *path;
+    char *beside;  ///< name until it is whole; NULL: written directly
+    int file;
+    bool whole;  ///< as far as it has come; false: is to be given up
+} dem_file_making;
+dem_status dem_file_begin(const char *path, dem_file_making *f, dem_error *error);
+dem_status dem_file_put(dem_file_making *f, const dem_piece *pieces, size_t count, dem_error *error);
+dem_status dem_file_end(dem_file_making *f, dem_error *error);
+
 /// Writes and releases a buffer; a buffer that has failed is DEM_NO_MEMORY.
 dem_status dem_file_write_buffer(const char *path, dem_buffer *buffer, dem_error *error);
 

@@ -31,7 +31,9 @@ typedef struct cloud {
     dem_surface_point *points;
     size_t count;
     dem_box_tree tree;
-    float *x, *y, *z;  // [blocks * LANES], padded with the last point
+    float *x, *y, *z;  // [blocks * LANES] neighbours side by side, padded with the last point
+    float *coarse_x, *coarse_y, *coarse_z;  // [blocks] one of each block
+    float *bounds;     // [blocks] radius of a block around that one
     size_t blocks;
 } cloud;
 
@@ -141,26 +143,38 @@ static int larger_first(const void *left, const void *right)
     return a->centre.x < b->centre.x ? -1 : a->centre.x > b->centre.x;
 }
 
-// Largest ball that touches p from inside (normal n) and holds no point of the cloud deeper than SMOOTH: with e = p - q
-// that is r <= (e.e - SMOOTH^2) / (2 (n.e - SMOOTH)) for every q with n.e > SMOOTH.
-static dem_ball touching_ball(const cloud *c, dem_vec3 p, dem_vec3 n)
+// The least of `least` and of the radii of the balls that touch p from inside (normal n) and come SMOOTH deep to a point
+// q: with e = p - q that is r = (e.e - SMOOTH^2) / (2 (n.e - SMOOTH)) for every q with n.e > SMOOTH.
+static float least_radius(dem_vec3 p, dem_vec3 n, const float *x, const float *y, const float *z, size_t count,
+                          float least)
 {
     const float px = (float)p.x, py = (float)p.y, pz = (float)p.z;
     const float nx = (float)n.x, ny = (float)n.y, nz = (float)n.z, deep = (float)SMOOTH;
-    float least[LANES];
+    float lane[LANES];
     for (int k = 0; k < LANES; k++)
-        least[k] = LARGEST;
-    for (size_t b = 0; b < c->blocks; b++) {
-        const float *x = c->x + b * LANES, *y = c->y + b * LANES, *z = c->z + b * LANES;
+        lane[k] = least;
+    for (size_t i = 0; i < count; i += LANES)
         for (int k = 0; k < LANES; k++) {
-            float ex = px - x[k], ey = py - y[k], ez = pz - z[k];
+            float ex = px - x[i + (size_t)k], ey = py - y[i + (size_t)k], ez = pz - z[i + (size_t)k];
             float low = ex * nx + ey * ny + ez * nz - deep, r = (ex * ex + ey * ey + ez * ez - deep * deep) / (2 * low);
-            least[k] = low > 0 && r < least[k] ? r : least[k];
+            lane[k] = low > 0 && r < lane[k] ? r : lane[k];
         }
+    for (int k = 0; k < LANES; k++)
+        least = lane[k] < least ? lane[k] : least;
+    return least;
+}
+
+// Largest ball that touches p from inside and holds no point of the cloud deeper than SMOOTH. One point of each block
+// tells nearly how large it is, and few blocks reach into that.
+static dem_ball touching_ball(const cloud *c, dem_vec3 p, dem_vec3 n)
+{
+    float r = least_radius(p, n, c->coarse_x, c->coarse_y, c->coarse_z, c->blocks, LARGEST);
+    for (size_t b = 0; b < c->blocks && r > 0; b++) {
+        float x = (float)(p.x - (double)r * n.x) - c->coarse_x[b], y = (float)(p.y - (double)r * n.y) - c->coarse_y[b];
+        float z = (float)(p.z - (double)r * n.z) - c->coarse_z[b], reach = r + c->bounds[b];
+        if (x * x + y * y + z * z < reach * reach)
+            r = least_radius(p, n, c->x + b * LANES, c->y + b * LANES, c->z + b * LANES, LANES, r);
     }
-    float r = least[0];
-    for (int k = 1; k < LANES; k++)
-        r = least[k] < r ? least[k] : r;
     r = r > 0 ? r : 0;
     return (dem_ball){v3_along(p, -r, n), r};
 }
@@ -320,25 +334,45 @@ static void cloud_release(cloud *c)
     dem_box_tree_release(&c->tree);
 }
 
+// the columns of points and blocks, from the points in the order of the tree
+static void set_columns(cloud *c)
+{
+    c->y = c->x + CLOUD;
+    c->z = c->y + CLOUD;
+    c->coarse_x = c->z + CLOUD;
+    c->coarse_y = c->coarse_x + c->blocks;
+    c->coarse_z = c->coarse_y + c->blocks;
+    c->bounds = c->coarse_z + c->blocks;
+    for (size_t i = 0; i < CLOUD; i++) {
+        dem_vec3 p = c->points[c->tree.order[i < c->count ? i : c->count - 1]].point;
+        c->x[i] = (float)p.x;
+        c->y[i] = (float)p.y;
+        c->z[i] = (float)p.z;
+    }
+    for (size_t b = 0; b < c->blocks; b++) {
+        size_t middle = b * LANES + LANES / 2;
+        double widest = 0;
+        c->coarse_x[b] = c->x[middle];
+        c->coarse_y[b] = c->y[middle];
+        c->coarse_z[b] = c->z[middle];
+        for (size_t i = b * LANES; i < (b + 1) * LANES; i++)
+            widest = fmax(widest, v3_norm(v3((double)(c->x[i] - c->x[middle]), (double)(c->y[i] - c->y[middle]),
+                                             (double)(c->z[i] - c->z[middle]))));
+        c->bounds[b] = (float)widest;
+    }
+}
+
 static dem_status cloud_make(cloud *c, const dem_tree *tree, dem_error *error)
 {
     *c = (cloud){.points = dem_alloc(CLOUD, sizeof *c->points), .count = CLOUD, .blocks = CLOUD / LANES};
-    c->x = dem_alloc(3 * CLOUD, sizeof *c->x);
-    if (c->points && c->x) {
+    c->x = dem_alloc(3 * CLOUD + 4 * c->blocks, sizeof *c->x);
+    if (c->points && c->x)
         dem_tree_spread(tree, c->points, &c->count);
-        c->y = c->x + CLOUD;
-        c->z = c->y + CLOUD;
-        for (size_t i = 0; i < CLOUD; i++) {
-            dem_vec3 p = c->points[i < c->count ? i : c->count - 1].point;
-            c->x[i] = (float)p.x;
-            c->y[i] = (float)p.y;
-            c->z[i] = (float)p.z;
-        }
-    }
     if (!c->points || !c->x || !dem_box_tree_build(&c->tree, c->points, c->count, LEAF_POINTS, point_box)) {
         cloud_release(c);
         return dem_fail_memory(error);
     }
+    set_columns(c);
     return DEM_OK;
 }
 

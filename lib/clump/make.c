@@ -39,11 +39,7 @@ dem_status dem_make_surface(const dem_mesh *mesh, size_t triangles, const dem_cl
 {
     if (triangles == 0)
         return DEM_OK;
-    dem_status status = mesh->triangle_count <= triangles ? dem_mesh_copy(mesh, surface, error)
-                                                          : dem_mesh_decimate(mesh, triangles, surface, error);
-    if (status == DEM_UNAVAILABLE)
-        return DEM_OK;  // the surface is optional
-    DEM_TRY(status);
+    DEM_TRY(dem_mesh_decimate(mesh, triangles, surface, error));
     for (size_t i = 0; i < surface->vertex_count; i++)
         to_clump_frame(&surface->vertices[i], def->position, def->orientation);
     return DEM_OK;

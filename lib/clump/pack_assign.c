@@ -7,6 +7,8 @@
 // Near lists take in balls this much farther than needed, so that they hold while balls move [d_eq].
 static const double slack = 0.03;
 
+enum { LISTED_TOGETHER = 8 };  // neighbouring blocks
+
 void dem_ball_columns_set(dem_ball_columns *columns, const dem_ball *balls, size_t count)
 {
     dem_ball_columns *c = columns;
@@ -25,9 +27,9 @@ void dem_ball_columns_set(dem_ball_columns *columns, const dem_ball *balls, size
 }
 
 // room for one more list
-static bool reserve_near(const dem_packing *p, dem_pack_chunk *chunk)
+static bool reserve_near(dem_pack_chunk *chunk)
 {
-    size_t needed = chunk->near_count + p->columns.padded;
+    size_t needed = chunk->near_count + chunk->some.padded;
     if (needed <= chunk->near_capacity)
         return true;
     size_t capacity = needed + needed / 2;
@@ -43,19 +45,47 @@ static bool reserve_near(const dem_packing *p, dem_pack_chunk *chunk)
     return true;
 }
 
+// a ball around the bounds of some blocks
+static dem_block_bound bound_all(const dem_block_bound *bounds, size_t count)
+{
+    float low[3] = {INFINITY, INFINITY, INFINITY}, high[3] = {-INFINITY, -INFINITY, -INFINITY};
+    for (size_t k = 0; k < count; k++) {
+        const float at[3] = {bounds[k].x, bounds[k].y, bounds[k].z};
+        for (int a = 0; a < 3; a++) {
+            low[a] = fminf(low[a], at[a]);
+            high[a] = fmaxf(high[a], at[a]);
+        }
+    }
+    dem_block_bound all = {(low[0] + high[0]) / 2, (low[1] + high[1]) / 2, (low[2] + high[2]) / 2, 0};
+    for (size_t k = 0; k < count; k++) {
+        float x = bounds[k].x - all.x, y = bounds[k].y - all.y, z = bounds[k].z - all.z;
+        all.radius = fmaxf(all.radius, sqrtf(x * x + y * y + z * z) + bounds[k].radius);
+    }
+    all.radius *= 1 + 1e-5f;  // rounding
+    return all;
+}
+
+// of the balls near `LISTED_TOGETHER` neighbouring blocks those near each
 static void list_near(dem_packing *p, dem_pack_chunk *chunk)
 {
     chunk->near_count = 0;
-    for (size_t b = chunk->begin; b < chunk->end; b++) {
-        if (!reserve_near(p, chunk)) {
-            chunk->failed = true;
-            return;
+    for (size_t first = chunk->begin; first < chunk->end; first += LISTED_TOGETHER) {
+        size_t count = chunk->end - first < LISTED_TOGETHER ? chunk->end - first : LISTED_TOGETHER;
+        dem_block_bound all = bound_all(p->samples.bounds + first, count);
+        p->kernels->gather_near(&p->columns, &all, (float)p->near_slack, &chunk->work, &chunk->some, chunk->ids);
+        for (size_t b = first; b < first + count; b++) {
+            if (!reserve_near(chunk)) {
+                chunk->failed = true;
+                return;
+            }
+            size_t at = chunk->near_count;
+            p->near_begin[b] = at;
+            p->near_size[b] = (uint32_t)p->kernels->list_near(&chunk->some, &p->samples.bounds[b], (float)p->near_slack,
+                                                              &chunk->work, chunk->near + at, chunk->near_least + at);
+            for (size_t k = at; k < at + p->near_size[b]; k++)
+                chunk->near[k] = chunk->ids[chunk->near[k]];
+            chunk->near_count += p->near_size[b];
         }
-        size_t at = chunk->near_count;
-        p->near_begin[b] = at;
-        p->near_size[b] = (uint32_t)p->kernels->list_near(&p->columns, &p->samples.bounds[b], (float)p->near_slack,
-                                                          &chunk->work, chunk->near + at, chunk->near_least + at);
-        chunk->near_count += p->near_size[b];
     }
 }
 

@@ -2,8 +2,6 @@
 // one is -v1; v2 adds nothing these loops could use.
 #include "clump/pack_kernels.h"
 
-#include <string.h>
-
 #include "base/level.h"
 
 static const float nowhere = 1e9f;
@@ -42,8 +40,43 @@ static bool any_above(const float *restrict a, float limit)
 }
 
 // Which balls can be nearest or second nearest to a sample of a block of radius R about b: with t_i the distance of b
-// to ball i, those with t_i <= (second smallest t) + 2 R. They are put into buckets by t, nearest first: few of them
-// are looked at before no other one can be nearer.
+// to ball i, those with t_i <= (second smallest t) + 2 R.
+static float near_limit(const dem_ball_columns *balls, const float smallest[2], const dem_block_bound *bound,
+                        float slack)
+{
+    return (balls->count > 1 ? smallest[1] : smallest[0]) + 2 * bound->radius + slack;
+}
+
+static uint32_t lanes_within(const float *restrict distance, float limit)
+{
+    uint32_t within = 0;
+    for (int l = 0; l < DEM_LANES; l++)
+        within |= (uint32_t)(distance[l] <= limit) << l;
+    return within;
+}
+
+static void gather_near(const dem_ball_columns *balls, const dem_block_bound *bound, float slack,
+                        const dem_near_work *work, dem_ball_columns *some, uint32_t *restrict ids)
+{
+    float smallest[2], *restrict distance = work->distance;
+    size_t count = 0;
+    distances(balls, bound, distance, smallest);
+    float limit = near_limit(balls, smallest, bound, slack);
+    for (size_t i = 0; i < balls->padded; i += DEM_LANES)
+        for (uint32_t within = lanes_within(distance + i, limit); within; within &= within - 1)
+            ids[count++] = (uint32_t)i + (uint32_t)__builtin_ctz(within);
+    some->count = count;
+    some->padded = (count + DEM_LANES - 1) / DEM_LANES * DEM_LANES;
+    for (size_t k = 0; k < some->padded; k++) {
+        bool is = k < count;
+        some->x[k] = is ? balls->x[ids[k]] : nowhere;
+        some->y[k] = is ? balls->y[ids[k]] : nowhere;
+        some->z[k] = is ? balls->z[ids[k]] : nowhere;
+        some->r[k] = is ? balls->r[ids[k]] : 0;
+    }
+}
+
+// Those balls are put into buckets by t, nearest first: few of them are looked at before no other one can be nearer.
 static size_t list_near(const dem_ball_columns *balls, const dem_block_bound *bound, float slack,
                         const dem_near_work *work, uint32_t *restrict list, float *restrict least)
 {
@@ -52,20 +85,16 @@ static size_t list_near(const dem_ball_columns *balls, const dem_block_bound *bo
     uint32_t *restrict found = work->found, *restrict bucket = work->bucket, begin[BUCKETS + 1] = {0};
     size_t count = 0;
     distances(balls, bound, distance, smallest);
-    float second = balls->count > 1 ? smallest[1] : smallest[0], limit = second + 2 * bound->radius + slack;
+    float limit = near_limit(balls, smallest, bound, slack);
     float per_bucket = BUCKETS / (limit - smallest[0]);
-    for (size_t i = 0; i < balls->padded; i += DEM_LANES) {
-        uint32_t within = 0;
-        for (int l = 0; l < DEM_LANES; l++)
-            within |= (uint32_t)(distance[i + (size_t)l] <= limit) << l;
-        for (; within; within &= within - 1) {
+    for (size_t i = 0; i < balls->padded; i += DEM_LANES)
+        for (uint32_t within = lanes_within(distance + i, limit); within; within &= within - 1) {
             uint32_t ball = (uint32_t)i + (uint32_t)__builtin_ctz(within);
             int32_t k = (int32_t)((distance[ball] - smallest[0]) * per_bucket);
             bucket[count] = k < BUCKETS ? (uint32_t)k : BUCKETS - 1;
             begin[bucket[count] + 1]++;
             found[count++] = ball;
         }
-    }
     for (int k = 0; k < BUCKETS; k++)
         begin[k + 1] += begin[k];
     for (size_t k = 0; k < count; k++) {
@@ -365,226 +394,8 @@ static int64_t lattice_gain(const dem_lattice *lattice, dem_ball ball, uint64_t 
     return gain;
 }
 
-/// A ball as a strip of lines sees it.
-typedef struct strip_ball {
-    float u, v, w;    ///< from the first line to the centre across, from the centre to the row, centre along
-    float reach2;     ///< r^2 - v^2
-} strip_ball;
-
-static strip_ball strip_view(const dem_ball_columns *balls, int axis, uint32_t i, float x, float y)
-{
-    const float *at[3] = {balls->x, balls->y, balls->z};
-    float u = at[(axis + 1) % 3][i] - x, v = y - at[(axis + 2) % 3][i], r = balls->r[i];
-    return (strip_ball){u, v, at[axis][i], r * r - v * v};
-}
-
-/// One end of the union on each line of a strip, and whose end it is (an index into the strip's balls).
-typedef struct strip_front {
-    float at[DEM_LINE_LANES];
-    int32_t ball[DEM_LINE_LANES];
-} strip_front;
-
-static bool any_below(const float *restrict a, float limit)
-{
-    int32_t any = 0;
-    for (int l = 0; l < DEM_LINE_LANES; l++)
-        any |= a[l] < limit;
-    return any;
-}
-
-// The interval of one ball on each line of a strip; empty ones are inside out and far away. Lowers `begin` to where it
-// begins.
-static void strip_ends(strip_ball ball, int32_t who, float step, float *restrict from, float *restrict to,
-                       strip_front *restrict begin)
-{
-    for (int l = 0; l < DEM_LINE_LANES; l++) {
-        float off = (float)l * step - ball.u, rest = ball.reach2 - off * off;
-        float half = sqrtf(rest > 0 ? rest : 0);
-        from[l] = rest > 0 ? ball.w - half : nowhere;
-        to[l] = rest > 0 ? ball.w + half : -nowhere;
-        begin->ball[l] = from[l] < begin->at[l] ? who : begin->ball[l];
-        begin->at[l] = from[l] < begin->at[l] ? from[l] : begin->at[l];
-    }
-}
-
-static void front_nowhere(strip_front *front)
-{
-    for (int l = 0; l < DEM_LINE_LANES; l++) {
-        front->at[l] = nowhere;
-        front->ball[l] = 0;
-    }
-}
-
-// moves the end of the union's interval on as far as the balls reach, seen in their order
-static void move_end(const dem_line_task *task, size_t count, strip_front *restrict end)
-{
-    float at[DEM_LINE_LANES];
-    int32_t ball[DEM_LINE_LANES];
-    memcpy(at, end->at, sizeof at);
-    memcpy(ball, end->ball, sizeof ball);
-    for (size_t j = 0; j < count; j++) {
-        const float *restrict from = task->from[j], *restrict to = task->to[j];
-        int32_t who = (int32_t)j;
-        for (int l = 0; l < DEM_LINE_LANES; l++) {
-            float t = from[l] <= at[l] ? to[l] : -nowhere;
-            ball[l] = t > at[l] ? who : ball[l];
-            at[l] = t > at[l] ? t : at[l];
-        }
-    }
-    memcpy(end->at, at, sizeof at);
-    memcpy(end->ball, ball, sizeof ball);
-}
-
-// the lowest begin of an interval beyond `end`; false: it is not the end, a ball goes on from there
-static bool next_begin(const dem_line_task *task, size_t count, const strip_front *restrict end,
-                       strip_front *restrict begin)
-{
-    float at[DEM_LINE_LANES], passed[DEM_LINE_LANES];
-    int32_t ball[DEM_LINE_LANES], on[DEM_LINE_LANES], any = 0;
-    memcpy(passed, end->at, sizeof passed);
-    for (int l = 0; l < DEM_LINE_LANES; l++) {
-        at[l] = nowhere;
-        ball[l] = on[l] = 0;
-    }
-    for (size_t j = 0; j < count; j++) {
-        const float *restrict from = task->from[j], *restrict to = task->to[j];
-        int32_t who = (int32_t)j;
-        for (int l = 0; l < DEM_LINE_LANES; l++) {
-            float f = from[l] > passed[l] ? from[l] : nowhere;
-            on[l] |= (from[l] <= passed[l]) & (to[l] > passed[l]);
-            ball[l] = f < at[l] ? who : ball[l];
-            at[l] = f < at[l] ? f : at[l];
-        }
-    }
-    for (int l = 0; l < DEM_LINE_LANES; l++)
-        any |= on[l];
-    memcpy(begin->at, at, sizeof at);
-    memcpy(begin->ball, ball, sizeof ball);
-    return !any;
-}
-
-// The end of the union's interval that begins at `begin`, and where the next one begins. Balls come by their centres
-// along the lines, so one pass reaches the end nearly always.
-static void find_end(const dem_line_task *task, size_t count, const strip_front *begin, strip_front *restrict end,
-                     strip_front *restrict next)
-{
-    *end = *begin;
-    do
-        move_end(task, count, end);
-    while (!next_begin(task, count, end, next));
-}
-
-/// Ends against the grain: the length of the line inside it before the end, and whether the end itself is.
-typedef struct strip_inside {
-    float before[DEM_LINE_LANES], inside[DEM_LINE_LANES];
-} strip_inside;
-
-static void compare_spans(const dem_line_field *field, uint32_t strip, const float *restrict end,
-                          strip_inside *restrict result)
-{
-    for (int l = 0; l < DEM_LINE_LANES; l++)
-        result->before[l] = result->inside[l] = 0;
-    for (uint32_t s = field->span[strip]; s < field->span[strip + 1]; s++) {
-        const float *restrict enter = field->spans[s][0], *restrict leave = field->spans[s][1];
-        for (int l = 0; l < DEM_LINE_LANES; l++) {
-            float z = end[l], up = z > enter[l] ? z : enter[l];
-            up = up < leave[l] ? up : leave[l];
-            result->before[l] += up - enter[l];
-            result->inside[l] += ((z > enter[l]) & (z < leave[l])) ? 1.0f : 0.0f;
-        }
-    }
-}
-
-/// A strip and the balls it meets.
-typedef struct strip_place {
-    const dem_ball_columns *balls;
-    const dem_line_task *task;
-    const uint32_t *list;
-    size_t count;
-    uint32_t strip;
-    float x, y;       ///< of the first line
-} strip_place;
-
-// what ends that lie on the line add to the sums of their balls
-static void add_sums(const strip_place *place, const strip_front *front, const strip_inside *against)
-{
-    const dem_line_field *field = place->task->field;
-    const float *axes[3] = {place->balls->x, place->balls->y, place->balls->z};
-    const float *u = axes[(field->axis + 1) % 3], *v = axes[(field->axis + 2) % 3], *w = axes[field->axis];
-    float outside = place->task->protruding, inside = -place->task->uncovered;
-    float sums[4][DEM_LINE_LANES];
-    uint32_t ball[DEM_LINE_LANES];
-    for (int l = 0; l < DEM_LINE_LANES; l++)
-        ball[l] = place->list[front->ball[l]];
-    for (int l = 0; l < DEM_LINE_LANES; l++) {
-        uint32_t i = ball[l];
-        float across = place->x + (float)l * field->step - u[i], along = front->at[l] - w[i];
-        float s = front->at[l] < nowhere ? (against->inside[l] > 0 ? inside : outside) * fabsf(along) : 0;
-        sums[0][l] = s * across;
-        sums[1][l] = s * (place->y - v[i]);
-        sums[2][l] = s * (front->at[l] < nowhere ? along : 0);
-        sums[3][l] = s;
-    }
-    for (int l = 0; l < DEM_LINE_LANES; l++)
-        for (int k = 0; k < 4; k++)
-            place->task->sums[ball[l]][k] += sums[k][l];
-}
-
-typedef struct strip_sums {
-    float covered[DEM_LINE_LANES], common[DEM_LINE_LANES];
-} strip_sums;
-
-static void add_strip(const strip_place *place, strip_sums *restrict sums, bool gradient)
-{
-    const dem_line_task *task = place->task;
-    strip_front begin, end, next;
-    front_nowhere(&begin);
-    for (size_t k = 0; k < place->count; k++) {
-        strip_ball ball = strip_view(place->balls, task->field->axis, place->list[k], place->x, place->y);
-        strip_ends(ball, (int32_t)k, task->field->step, task->from[k], task->to[k], &begin);
-    }
-    for (; any_below(begin.at, nowhere); begin = next) {
-        strip_inside low, high;
-        find_end(task, place->count, &begin, &end, &next);
-        compare_spans(task->field, place->strip, begin.at, &low);
-        compare_spans(task->field, place->strip, end.at, &high);
-        for (int l = 0; l < DEM_LINE_LANES; l++) {
-            sums->covered[l] += end.at[l] - begin.at[l];
-            sums->common[l] += high.before[l] - low.before[l];
-        }
-        if (gradient) {
-            add_sums(place, &begin, &low);
-            add_sums(place, &end, &high);
-        }
-    }
-}
-
-static void lines(const dem_ball_columns *balls, dem_line_task *task, bool gradient)
-{
-    const dem_line_field *field = task->field;
-    double covered = 0, common = 0;
-    for (int32_t row = task->begin; row < task->end; row++) {
-        strip_sums sums = {{0}, {0}};
-        float y = field->origin[1] + (float)row * field->step;
-        for (uint32_t s = field->strip[row]; s < field->strip[row + 1]; s++) {
-            int32_t column = field->first[row] + (int32_t)(s - field->strip[row]) * DEM_LINE_LANES;
-            const uint32_t *start = task->start + (s - field->strip[task->begin]);
-            if (start[0] == start[1])
-                continue;
-            strip_place place = {balls, task, task->list + start[0], start[1] - start[0], s,
-                                 field->origin[0] + (float)column * field->step, y};
-            add_strip(&place, &sums, gradient);
-        }
-        for (int l = 0; l < DEM_LINE_LANES; l++) {
-            covered += (double)sums.covered[l];
-            common += (double)sums.common[l];
-        }
-    }
-    task->covered = covered;
-    task->common = common;
-}
-
 const dem_pack_kernels DEM_LEVEL_OF(dem_pack_kernels) = {
+    .gather_near = gather_near,
     .list_near = list_near,
     .nearest = nearest,
     .nearest_two = nearest_two,
@@ -595,5 +406,5 @@ const dem_pack_kernels DEM_LEVEL_OF(dem_pack_kernels) = {
     .equations = equations,
     .approach = approach,
     .lattice_gain = lattice_gain,
-    .lines = lines,
+    .lines = &DEM_LEVEL_OF(dem_line_kernels),
 };

@@ -46,7 +46,7 @@ typedef struct dem_line_field {
 typedef struct dem_line_task {
     const dem_line_field *field;
     int32_t begin, end;      ///< rows
-    uint32_t *start;         ///< [strips + 1] of the balls that a strip meets, in `list`
+    uint32_t *start;         ///< [strips + 1] of the balls that a strip needs, in `list`
     uint32_t *list;          ///< of each strip by coordinate along the lines
     size_t list_capacity;
     float uncovered, protruding;   ///< weights of what the union lacks and of what it has too much
@@ -54,11 +54,12 @@ typedef struct dem_line_task {
     /// -`uncovered` for one inside, n the unit normal of the ball, w along the lines: s |n_w| r (n_u r, n_v r, n_w r, 1)
     float (*sums)[4];
     float (*from)[DEM_LINE_LANES], (*to)[DEM_LINE_LANES];  ///< [balls] work space: the ends of their intervals
+    unsigned char *kept;     ///< [balls] work space
     double covered, common;  ///< length of the lines inside the union, and inside both
     bool failed;             ///< out of memory
 } dem_line_task;
 
-/// Work space of `list_near`: [padded balls].
+/// Work space of `gather_near` and `list_near`: [padded balls].
 typedef struct dem_near_work {
     float *distance;
     uint32_t *found, *bucket;
@@ -74,8 +75,11 @@ typedef struct dem_near_list {
 } dem_near_list;
 
 typedef struct dem_pack_kernels {
-    /// Lists the balls that are nearest or second nearest to some place in the bound while none moves by more than half
-    /// of `slack`, roughly by their distances; `list` and `least` have room for all, padded. Returns their number.
+    /// Copies the balls that are nearest or second nearest to some place in the bound while none moves by more than half
+    /// of `slack`, in their order, to `some`, which has room for all; ids[k] is where some[k] comes from.
+    void (*gather_near)(const dem_ball_columns *balls, const dem_block_bound *bound, float slack,
+                        const dem_near_work *work, dem_ball_columns *some, uint32_t *ids);
+    /// Lists these balls roughly by their distances; `list` and `least` have room for all, padded. Returns their number.
     size_t (*list_near)(const dem_ball_columns *balls, const dem_block_bound *bound, float slack,
                         const dem_near_work *work, uint32_t *list, float *least);
     /// Nearest of the listed balls for each sample: f and owner.
@@ -101,13 +105,21 @@ typedef struct dem_pack_kernels {
     /// By how many points the symmetric difference of grain and covered set shrinks with this ball; marks its points in
     /// `cover` unless NULL.
     int64_t (*lattice_gain)(const dem_lattice *lattice, dem_ball ball, uint64_t *cover);
-    /// Adds to `sums` if the gradient is wanted; sets `covered` and `common`.
-    void (*lines)(const dem_ball_columns *balls, dem_line_task *task, bool gradient);
+    const struct dem_line_kernels *lines;
 } dem_pack_kernels;
+
+typedef struct dem_line_kernels {
+    /// Adds to `sums` if the gradient is wanted; sets `covered` and `common`.
+    void (*measure)(const dem_ball_columns *balls, dem_line_task *task, bool gradient);
+    /// Leaves out of the lists the balls that stay hidden while no ball changes by more than `slack`: the shift of its
+    /// centre and the change of its radius taken together.
+    void (*cull)(const dem_ball_columns *balls, dem_line_task *task, float slack);
+} dem_line_kernels;
 
 /// The best set this machine can run, or the named one (NULL: none such, or not usable here).
 const dem_pack_kernels *dem_pack_kernels_choose(const char *name);
 
+extern const dem_line_kernels dem_line_kernels_plain, dem_line_kernels_v3, dem_line_kernels_v4;
 extern const dem_pack_kernels dem_pack_kernels_plain, dem_pack_kernels_v3, dem_pack_kernels_v4;
 
 #endif

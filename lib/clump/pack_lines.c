@@ -10,6 +10,13 @@
 
 static const double margin = 0.1;                      // lines are kept this far around the grain's shadow [d_eq]
 static const float far_away = 1e9f;
+static const float rounding = 1e-6f;
+
+// The lists of strips hold while no ball changes by more than the slack [d_eq]. With little of it they are short, with
+// much they last: between the two it goes by how many evaluations the last lists served.
+static const float first_slack = 0.012f, least_slack = 0.003f, most_slack = 0.03f, slack_factor = 1.5f;
+enum { SHORT_LIVED = 5, LONG_LIVED = 12 };
+enum { FEW_BALLS = 8 };  // on a strip: none is worth leaving out
 
 static uint32_t strips_of(const dem_columns *c, int32_t row)
 {
@@ -106,7 +113,11 @@ static dem_status take_work_space(dem_lines *lines, dem_error *error)
         task->start = dem_arena_take(&lines->arena, strips + 1, sizeof *task->start);
         task->from = dem_arena_take(&lines->arena, lines->capacity, sizeof *task->from);
         task->to = dem_arena_take(&lines->arena, lines->capacity, sizeof *task->to);
+        task->kept = dem_arena_take(&lines->arena, lines->capacity, sizeof *task->kept);
     }
+    float **columns[4] = {&lines->listed.x, &lines->listed.y, &lines->listed.z, &lines->listed.r};
+    for (int k = 0; k < 4; k++)
+        *columns[k] = dem_arena_take(&lines->arena, lines->capacity, sizeof(float));
     for (int axis = 0; axis < 3; axis++)
         lines->order[axis] = dem_arena_take(&lines->arena, lines->capacity, sizeof *lines->order[axis]);
     return lines->arena.failed ? dem_fail_memory(error) : DEM_OK;
@@ -116,7 +127,7 @@ dem_status dem_lines_build(const dem_pack_grain *grain, const dem_pack_kernels *
                            const double offsets[2], size_t capacity, dem_crew *crew, dem_lines *lines, dem_error *error)
 {
     *lines = (dem_lines){.kernels = kernels, .capacity = capacity, .crew = crew,
-                         .uncovered = 1, .protruding = 1};
+                         .uncovered = 1, .protruding = 1, .slack = first_slack};
     dem_status status = DEM_OK;
     for (int axis = 0; axis < 3 && status == DEM_OK; axis++) {
         dem_columns columns;
@@ -146,17 +157,19 @@ void dem_lines_release(dem_lines *lines)
 
 // Counts the balls of each strip of the task, or with `fill` writes them. start[s] is where the balls of strip s end
 // before, and begin after.
-static void visit_strips(const dem_ball_columns *balls, const dem_placed_ball *order, dem_line_task *task, bool fill)
+static void visit_strips(const dem_lines *lines, const dem_ball_columns *balls, dem_line_task *task, bool fill)
 {
+    const dem_placed_ball *order = lines->order[task->field->axis];
     const dem_line_field *field = task->field;
     const float *at[3] = {balls->x, balls->y, balls->z};
     const float *u = at[(field->axis + 1) % 3], *v = at[(field->axis + 2) % 3];
     float per_row = 1 / field->step, per_strip = 1 / (field->step * DEM_LINE_LANES);
     for (size_t k = balls->count; k-- > 0;) {
         uint32_t i = order[k].ball;
-        float r = balls->r[i], low = (v[i] - r - field->origin[1]) * per_row, high = (v[i] + r - field->origin[1]) * per_row;
-        int32_t begin = low > (float)task->begin ? (int32_t)low : task->begin;
-        int32_t end = high < (float)(task->end - 1) ? (int32_t)high + 1 : task->end;
+        float r = balls->r[i] + lines->slack, from_row = (v[i] - r - field->origin[1]) * per_row;
+        float to_row = (v[i] + r - field->origin[1]) * per_row;
+        int32_t begin = from_row > (float)task->begin ? (int32_t)from_row : task->begin;
+        int32_t end = to_row < (float)(task->end - 1) ? (int32_t)to_row + 1 : task->end;
         for (int32_t row = begin; row < end; row++) {
             float off = field->origin[1] + (float)row * field->step - v[i], reach2 = r * r - off * off;
             int32_t strips = (int32_t)(field->strip[row + 1] - field->strip[row]);
@@ -179,11 +192,11 @@ static void visit_strips(const dem_ball_columns *balls, const dem_placed_ball *o
 }
 
 // which balls each strip of a task meets: a counting sort
-static bool list_strips(const dem_ball_columns *balls, const dem_placed_ball *order, dem_line_task *task)
+static bool list_strips(const dem_lines *lines, const dem_ball_columns *balls, dem_line_task *task)
 {
     uint32_t strips = task->field->strip[task->end] - task->field->strip[task->begin];
     memset(task->start, 0, (strips + 1) * sizeof *task->start);
-    visit_strips(balls, order, task, false);
+    visit_strips(lines, balls, task, false);
     for (uint32_t s = 1; s <= strips; s++)
         task->start[s] += task->start[s - 1];
     size_t count = task->start[strips];
@@ -195,7 +208,7 @@ static bool list_strips(const dem_ball_columns *balls, const dem_placed_ball *or
         task->list = grown;
         task->list_capacity = capacity;
     }
-    visit_strips(balls, order, task, true);
+    visit_strips(lines, balls, task, true);
     return true;
 }
 
@@ -235,15 +248,48 @@ static void add_gradient(const dem_line_task *task, const dem_ball_columns *ball
     }
 }
 
+static bool lists_hold(const dem_lines *lines, const dem_ball_columns *balls)
+{
+    const dem_ball_columns *then = &lines->listed;
+    bool hold = then->count == balls->count;
+    for (size_t i = 0; i < balls->count && hold; i++) {
+        float x = balls->x[i] - then->x[i], y = balls->y[i] - then->y[i], z = balls->z[i] - then->z[i];
+        hold = sqrtf(x * x + y * y + z * z) + fabsf(balls->r[i] - then->r[i]) < lines->slack - rounding;
+    }
+    return hold;
+}
+
+// lists will be made of the balls as they are now
+static void begin_lists(dem_lines *lines, const dem_ball_columns *balls)
+{
+    dem_ball_columns *then = &lines->listed;
+    if (then->count == balls->count && lines->served < SHORT_LIVED)
+        lines->slack = fminf(lines->slack * slack_factor, most_slack);
+    else if (then->count == balls->count && lines->served > LONG_LIVED)
+        lines->slack = fmaxf(lines->slack / slack_factor, least_slack);
+    lines->served = 0;
+    set_order(lines, balls);
+    float *const to[4] = {then->x, then->y, then->z, then->r};
+    float *const from[4] = {balls->x, balls->y, balls->z, balls->r};
+    for (int k = 0; k < 4; k++)
+        memcpy(to[k], from[k], balls->count * sizeof(float));
+    then->count = balls->count;
+}
+
 static void run_task(const dem_lines *lines, const dem_ball_columns *balls, dem_line_task *task, bool gradient)
 {
     if (gradient)
         memset(task->sums, 0, balls->count * sizeof *task->sums);
     task->uncovered = (float)lines->uncovered;
     task->protruding = (float)lines->protruding;
-    task->failed = !list_strips(balls, lines->order[task->field->axis], task);
+    if (lines->make_lists) {
+        uint32_t strips = task->field->strip[task->end] - task->field->strip[task->begin];
+        task->failed = !list_strips(lines, balls, task);
+        if (!task->failed && task->start[strips] > FEW_BALLS * strips)
+            lines->kernels->lines->cull(balls, task, lines->slack);
+    }
     if (!task->failed)
-        lines->kernels->lines(balls, task, gradient);
+        lines->kernels->lines->measure(balls, task, gradient);
 }
 
 // what the crew shares
@@ -263,14 +309,19 @@ dem_status dem_lines_measure(dem_lines *lines, const dem_ball_columns *balls, do
                              dem_line_volumes *volumes, dem_error *error)
 {
     DEM_ASSERT(balls->count <= lines->capacity);
-    set_order(lines, balls);
+    lines->make_lists = !lists_hold(lines, balls);
+    if (lines->make_lists)
+        begin_lists(lines, balls);
+    lines->served++;
     dem_crew_run(lines->crew, DEM_LINE_TASKS, run_part, &(shared){lines, balls, gradient != NULL});
     for (size_t i = 0; i < balls->count && gradient; i++)
         gradient[i][0] = gradient[i][1] = gradient[i][2] = gradient[i][3] = 0;
     double grain = lines->grain_length[0] + lines->grain_length[1] + lines->grain_length[2], covered = 0, common = 0;
     for (int k = 0; k < DEM_LINE_TASKS; k++) {
-        if (lines->tasks[k].failed)
+        if (lines->tasks[k].failed) {
+            lines->listed.count = 0;
             return dem_fail_memory(error);
+        }
         covered += lines->tasks[k].covered;
         common += lines->tasks[k].common;
         if (gradient)

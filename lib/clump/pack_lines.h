@@ -20,6 +20,10 @@ typedef struct dem_lines {
     dem_arena arena;
     dem_placed_ball *order[3];   ///< [capacity] balls by their coordinates
     size_t order_count;
+    dem_ball_columns listed;     ///< the balls when the lists of the tasks were made; of other numbers: there are none
+    float slack;                 ///< by how much balls may change before new lists are made
+    bool make_lists;             ///< in the evaluation under way
+    int served;                  ///< evaluations by the lists there are
     const dem_pack_kernels *kernels;
     size_t capacity;             ///< most balls
     double uncovered, protruding;  ///< weights of the two parts of the difference; 1 unless set otherwise

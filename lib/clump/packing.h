@@ -40,6 +40,8 @@ typedef struct dem_pack_state {
 typedef struct dem_pack_chunk {
     size_t begin, end;           ///< blocks
     dem_near_work work;
+    dem_ball_columns some;       ///< [capacity, padded] those near the blocks at hand
+    uint32_t *ids;               ///< [capacity, padded] of `some`
     uint32_t *near;              ///< balls near each block, one list after the other
     float *near_least;           ///< as in dem_near_list
     size_t near_count, near_capacity;

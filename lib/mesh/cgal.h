@@ -12,10 +12,6 @@ extern "C" {
 /// Convex hull of the vertices that triangles use. DEM_BAD_INPUT where they lie in one plane.
 dem_status dem_mesh_hull(const dem_mesh *mesh, dem_mesh *hull, dem_error *error);
 
-/// Edge collapse that keeps the volume (Lindstrom & Turk 1998) down to about `triangles`; a finer mesh is copied.
-/// The coordinates should be about 1 in size; see dem_mesh_decimate.
-dem_status dem_mesh_collapse(const dem_mesh *mesh, size_t triangles, dem_mesh *out, dem_error *error);
-
 /// Cuts the triangles of each pair along what they share, exactly, so that the triangles of `out` meet only in
 /// whole edges and corners; only then are new vertices rounded. Each piece keeps its triangle's orientation, so a
 /// closed surface stays closed. Pairs as of dem_mesh_crossings, all of them.

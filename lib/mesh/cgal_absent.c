@@ -17,12 +17,6 @@ dem_status dem_mesh_hull(const dem_mesh *mesh, dem_mesh *hull, dem_error *error)
     return absent("the convex hull", hull, error);
 }
 
-dem_status dem_mesh_collapse(const dem_mesh *mesh, size_t triangles, dem_mesh *out, dem_error *error)
-{
-    (void)mesh, (void)triangles;
-    return absent("decimation by edge collapse", out, error);
-}
-
 dem_status dem_mesh_refine(const dem_mesh *mesh, const uint32_t (*pairs)[2], size_t pair_count, dem_mesh *out,
                            dem_error *error)
 {

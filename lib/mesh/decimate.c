@@ -1,4 +1,4 @@
-// Decimation. Edge collapse costs some 10 us per triangle, so huge meshes are first thinned by merging the
+// Decimation. Huge meshes are first thinned by merging the
 // vertices of each cell of a grid into their mean (Rossignac & Borrel 1993).
 #include "mesh/decimate.h"
 
@@ -6,7 +6,7 @@
 #include <string.h>
 
 #include "base/memory.h"
-#include "mesh/cgal.h"
+#include "mesh/collapse.h"
 #include "mesh/mass.h"
 #include "mesh/weld.h"
 
@@ -110,16 +110,15 @@ dem_status dem_mesh_decimate(const dem_mesh *mesh, size_t triangles, dem_mesh *o
     double size = box_diagonal(box);
     move(&work, v3_scale(middle, -1), 1 / size);
     dem_status status = DEM_OK;
-    size_t thinned = DEM_CGAL ? THIN_FACTOR * triangles : triangles;
-    if (!DEM_CGAL || work.triangle_count > THIN_ABOVE + thinned)
-        status = thin(&work, thinned, error);
-    if (status == DEM_OK && DEM_CGAL) {
-        status = dem_mesh_collapse(&work, triangles, out, error);
-    } else if (status == DEM_OK) {
-        *out = work;
-        work = (dem_mesh){0};
+    if (work.triangle_count > THIN_ABOVE + THIN_FACTOR * triangles)
+        status = thin(&work, THIN_FACTOR * triangles, error);
+    if (status == DEM_OK)
+        status = dem_mesh_collapse(&work, triangles, error);
+    if (status != DEM_OK) {
+        dem_mesh_free(&work);
+        return status;
     }
-    move(out, v3_scale(middle, 1 / size), size);
-    dem_mesh_free(&work);
-    return status;
+    move(&work, v3_scale(middle, 1 / size), size);
+    *out = work;
+    return DEM_OK;
 }

@@ -1,13 +1,15 @@
-// Printing the numbers is all the work, so rows are printed by blocks in parallel, and the blocks written in order.
+// Printing the numbers is all the work, so rows are printed by blocks in parallel, and the blocks written in order, a
+// few at a time: the whole text takes more memory than the bodies' motion.
 #include "out/final.h"
 
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "base/file.h"
 #include "base/memory.h"
 
-enum { BLOCK = 4096, DIGITS = 17, NUMBERS = 13, NUMBER_TEXT = 32 };
+enum { BLOCK = 256, BLOCKS = 16, DIGITS = 17, NUMBERS = 13, NUMBER_TEXT = 32 };
 
 static const char HEAD[] = "shape,x,y,z,qw,qx,qy,qz,vx,vy,vz,wx,wy,wz";
 
@@ -48,33 +50,43 @@ static void put_row(dem_buffer *out, const dem_body_view *b, size_t i, const dem
     dem_buffer_bytes(out, text, (size_t)(at - text));
 }
 
+// the rows from `begin` on, as far as the blocks go
+static dem_status put_blocks(const dem_ctx *ctx, dem_file_making *file, const dem_body_view *b, size_t begin,
+                             const dem_buffer *names, bool scaled, dem_error *error)
+{
+    dem_buffer rows[BLOCKS] = {0};
+    dem_piece pieces[BLOCKS];
+    bool failed = false;
+#pragma omp parallel for schedule(dynamic) num_threads(dem_threads(ctx))
+    for (size_t k = 0; k < BLOCKS; k++)
+        for (size_t i = begin + k * BLOCK; i < b->count && i < begin + (k + 1) * BLOCK; i++)
+            put_row(&rows[k], b, i, names, scaled);
+    for (size_t k = 0; k < BLOCKS; k++) {
+        failed |= rows[k].failed;
+        pieces[k] = (dem_piece){rows[k].data, rows[k].size};
+    }
+    dem_status status = failed ? dem_fail_memory(error) : dem_file_put(file, pieces, BLOCKS, error);
+    for (size_t k = 0; k < BLOCKS; k++)
+        dem_buffer_release(&rows[k]);
+    return status;
+}
+
 static dem_status write_rows(const dem_ctx *ctx, const char *path, const dem_body_view *b, const dem_buffer *names,
                              dem_error *error)
 {
-    bool scaled = false, failed = false;
+    bool scaled = false;
+    char head[128];
     for (size_t i = 0; i < b->count && !scaled; i++)
         scaled = b->scale[i] != 1;
-    size_t blocks = (b->count + BLOCK - 1) / BLOCK;
-    dem_buffer *rows = dem_alloc_zero(blocks + 1, sizeof *rows);  // behind the head
-    dem_piece *pieces = dem_alloc(blocks + 1, sizeof *pieces);
-    if (rows && pieces) {
-        dem_buffer_print(&rows[0], "%s%s\n", HEAD, scaled ? ",scale" : "");
-#pragma omp parallel for schedule(dynamic) num_threads(dem_threads(ctx))
-        for (size_t k = 0; k < blocks; k++)
-            for (size_t i = k * BLOCK; i < b->count && i < (k + 1) * BLOCK; i++)
-                put_row(&rows[k + 1], b, i, names, scaled);
-        for (size_t k = 0; k <= blocks; k++) {
-            failed |= rows[k].failed;
-            pieces[k] = (dem_piece){rows[k].data, rows[k].size};
-        }
-    }
-    failed |= !rows || !pieces;
-    dem_status status = failed ? dem_fail_memory(error) : dem_file_write_pieces(path, pieces, blocks + 1, error);
-    for (size_t k = 0; rows && k <= blocks; k++)
-        dem_buffer_release(&rows[k]);
-    free(rows);
-    free(pieces);
-    return status;
+    int length = snprintf(head, sizeof head, "%s%s\n", HEAD, scaled ? ",scale" : "");
+    dem_file_making file;
+    DEM_TRY(dem_file_begin(path, &file, error));
+    dem_status status = dem_file_put(&file, &(dem_piece){head, (size_t)length}, 1, error);
+    for (size_t i = 0; i < b->count && status == DEM_OK; i += BLOCKS * BLOCK)
+        status = put_blocks(ctx, &file, b, i, names, scaled, error);
+    file.whole = status == DEM_OK;
+    dem_status ended = dem_file_end(&file, status == DEM_OK ? error : NULL);
+    return status == DEM_OK ? ended : status;
 }
 
 dem_status dem_final_write(const dem_ctx *ctx, const char *directory, const dem_shape_def *shapes, size_t shape_count,

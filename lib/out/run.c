@@ -15,6 +15,7 @@
 #include "out/network.h"
 #include "out/series.h"
 #include "sim/diagnose.h"
+#include "sim/scene.h"
 #include "sim/state.h"
 
 static const double LOOK_EVERY = 0.1;        // [s] of the wall's clock: progress, signals
@@ -419,7 +420,8 @@ dem_status dem_run(const dem_ctx *ctx, const dem_scene *scene, const dem_run_opt
     *result = (dem_run_result){0};
     DEM_TRY(set_end(&r, error));
     DEM_TRY(name_scene(&r, error));
-    dem_status status = dem_world_create(ctx, scene, &r.w, error);
+    dem_status status = options->spent ? dem_world_create_spending(ctx, options->spent, &r.w, error)
+                                       : dem_world_create(ctx, scene, &r.w, error);
     if (status == DEM_OK)
         status = take_up(&r, &resume, error);
     if (status == DEM_OK)

@@ -10,6 +10,7 @@ typedef struct dem_run_options {
     double until;        ///< end instead of the scene's [s]; NAN: the scene's
     uint64_t steps;      ///< end after so many steps, counted from the scene's start; 0: by time
     uint64_t warmup;     ///< steps before those, not timed
+    dem_scene *spent;    ///< the scene, where bodies that files hold may be forgotten; NULL: it stays whole
 } dem_run_options;
 
 /// What a run came to. Texts are owned; see dem_run_release.

@@ -81,18 +81,10 @@ static void judge_soft(dem_world *w)
 static void judge_walls(dem_world *w)
 {
     const dem_views *v = &w->views;
-    for (size_t i = 0; i < v->contact_count; i++) {
-        const dem_contact *c = &v->contacts[i];
-        if (c->wall == UINT32_MAX)
-            continue;
-        double radius =
-            w->templates.spheres[w->templates.items[v->shape[c->body]].first + c->sphere][3] * v->scale[c->body];
-        if (c->overlap > radius && worse(w, WARN_PASSED, c->overlap / radius))
-            dem_log(
-                w->ctx, DEM_LOG_WARNING,
+    if (v->passed > 1 && worse(w, WARN_PASSED, v->passed))
+        dem_log(w->ctx, DEM_LOG_WARNING,
                 "the centre of a sphere of body %u has passed wall \"%s\"; the wall is too soft, or the body too fast",
-                (unsigned)c->body, w->walls.items[c->wall].name);
-    }
+                (unsigned)v->passed_body, w->walls.items[v->passed_wall].name);
 }
 
 static void judge_speed(dem_world *w)

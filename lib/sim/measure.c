@@ -11,7 +11,19 @@
 #include "sim/population.h"
 #include "sim/servo.h"
 
-// arrays of the bodies, for as many as there are rows
+static void release_columns(dem_views *v)
+{
+    void *all[] = {v->shape,    v->coordination, v->id,    v->scale,  v->mass,       v->position,
+                   v->velocity, v->spin,         v->force, v->moment, v->orientation};
+    for (size_t i = 0; i < sizeof all / sizeof *all; i++)
+        free(all[i]);
+    v->shape = v->coordination = v->id = NULL;
+    v->scale = v->mass = NULL;
+    v->position = v->velocity = v->spin = v->force = v->moment = NULL;
+    v->orientation = NULL;
+}
+
+// arrays of the bodies, for as many as there are rows; not before something is measured
 static bool make_columns(dem_views *v, size_t n)
 {
     v->shape = dem_alloc(n, sizeof *v->shape);
@@ -25,17 +37,11 @@ static bool make_columns(dem_views *v, size_t n)
     v->force = dem_alloc(n, sizeof *v->force);
     v->moment = dem_alloc(n, sizeof *v->moment);
     v->orientation = dem_alloc(n, sizeof *v->orientation);
-    v->by_row = dem_alloc(n, sizeof *v->by_row);
-    return v->shape && v->coordination && v->id && v->scale && v->mass && v->position && v->velocity && v->spin &&
-           v->force && v->moment && v->orientation && v->by_row;
-}
-
-static void release_columns(dem_views *v)
-{
-    void *all[] = {v->shape,    v->coordination, v->id,    v->scale,  v->mass,        v->position,
-                   v->velocity, v->spin,         v->force, v->moment, v->orientation, v->by_row};
-    for (size_t i = 0; i < sizeof all / sizeof *all; i++)
-        free(all[i]);
+    bool good = v->shape && v->coordination && v->id && v->scale && v->mass && v->position && v->velocity && v->spin &&
+                v->force && v->moment && v->orientation;
+    if (!good)
+        release_columns(v);
+    return good;
 }
 
 void dem_views_number(dem_world *w)
@@ -50,7 +56,8 @@ dem_status dem_views_create(dem_world *w, dem_error *error)
 {
     dem_views *v = &w->views;
     v->walls = dem_alloc_zero(w->walls.count, sizeof *v->walls);
-    if (!make_columns(v, w->bodies.count) || !v->walls)
+    v->by_row = dem_alloc(w->bodies.count, sizeof *v->by_row);
+    if (!v->by_row || !v->walls)
         return dem_fail_memory(error);
     dem_views_number(w);
     return DEM_OK;
@@ -58,8 +65,12 @@ dem_status dem_views_create(dem_world *w, dem_error *error)
 
 bool dem_views_grow(dem_world *w)
 {
-    release_columns(&w->views);
-    if (!make_columns(&w->views, w->bodies.count))
+    dem_views *v = &w->views;
+    free(v->by_row);
+    v->by_row = dem_alloc(w->bodies.count, sizeof *v->by_row);
+    bool measured = v->shape;
+    release_columns(v);
+    if (!v->by_row || (measured && !make_columns(v, w->bodies.count)))
         return false;
     dem_views_number(w);
     return true;
@@ -68,6 +79,7 @@ bool dem_views_grow(dem_world *w)
 void dem_views_release(dem_views *v)
 {
     release_columns(v);
+    free(v->by_row);
     free(v->contacts);
     free(v->walls);
     free(v->records);
@@ -148,7 +160,6 @@ dem_status dem_visit_contacts(dem_world *w, dem_contact_visit visit, void *user,
 typedef struct tour {
     uint32_t last_a, last_other;  // the pair whose contacts are passing
     bool counted;
-    bool failed;
 } tour;
 
 static void add_to_body(dem_views *v, uint32_t i, dem_vec3 force, dem_vec3 arm, dem_vec3 turning)
@@ -199,7 +210,7 @@ static void visit_contact(void *user, dem_world *w, int form, const dem_contact_
     dem_figures *f = &v->figures;
     bool wall = form >= 0;
     uint32_t a = v->by_row[item->a], b = wall ? UINT32_MAX : v->by_row[item->b];
-    dem_vec3 force = from_array(r->force), arm = from_array(r->point_a), n = from_array(r->normal);
+    dem_vec3 force = from_array(r->force), arm = from_array(r->point_a);
     dem_vec3 point = v3_add(body_position(&w->bodies, item->a), arm);
     double radius = w->templates.spheres[item->sphere_a][3] * body_scale(&w->bodies, item->a);
     dem_vec3 turning = from_array(r->turning);
@@ -215,22 +226,56 @@ static void visit_contact(void *user, dem_world *w, int form, const dem_contact_
     count_coordination(t, v, a, wall ? ~item->sphere_b : b, b);  // walls must not look like bodies
     f->overlap_ratio = fmax(f->overlap_ratio, r->overlap / radius);
     v->elastic += r->elastic_normal + r->elastic_slide + r->elastic_turn;
+    if (wall && r->overlap / radius > v->passed) {
+        v->passed = r->overlap / radius;
+        v->passed_body = a;
+        v->passed_wall = item->sphere_b;
+    }
+}
+
+// ---- the contacts, for those who ask
+
+static void list_contact(void *user, dem_world *w, int form, const dem_contact_item *item, const dem_contact_record *r)
+{
+    bool *failed = user, wall = form >= 0;
+    dem_views *v = &w->views;
+    if (!r->touches)
+        return;
     if (!dem_grow(&v->contacts, &v->contact_capacity, v->contact_count, sizeof *v->contacts)) {
-        t->failed = true;
+        *failed = true;
         return;
     }
+    dem_vec3 force = from_array(r->force), n = from_array(r->normal);
     uint32_t first_a = w->templates.items[w->bodies.shape[item->a]].first;
     uint32_t first_b = wall ? item->sphere_b : w->templates.items[w->bodies.shape[item->b]].first;
-    v->contacts[v->contact_count++] = (dem_contact){.body = a,
-                                                    .other = b,
-                                                    .sphere = item->sphere_a - first_a,
-                                                    .other_sphere = item->sphere_b - first_b,
-                                                    .wall = wall ? item->sphere_b : UINT32_MAX,
-                                                    .point = point,
-                                                    .normal = n,
-                                                    .overlap = r->overlap,
-                                                    .normal_force = r->normal_force,
-                                                    .friction_force = v3_along(force, r->normal_force, n)};
+    v->contacts[v->contact_count++] =
+        (dem_contact){.body = v->by_row[item->a],
+                      .other = wall ? UINT32_MAX : v->by_row[item->b],
+                      .sphere = item->sphere_a - first_a,
+                      .other_sphere = item->sphere_b - first_b,
+                      .wall = wall ? item->sphere_b : UINT32_MAX,
+                      .point = v3_add(body_position(&w->bodies, item->a), from_array(r->point_a)),
+                      .normal = n,
+                      .overlap = r->overlap,
+                      .normal_force = r->normal_force,
+                      .friction_force = v3_along(force, r->normal_force, n)};
+}
+
+// 120 B each, which most runs never ask for
+static dem_status list_contacts(dem_world *w, dem_error *error)
+{
+    dem_views *v = &w->views;
+    size_t count = v->figures.contacts + v->figures.wall_contacts;
+    bool failed = false;
+    v->contact_count = 0;
+    if (count > v->contact_capacity) {
+        free(v->contacts);
+        v->contacts = dem_alloc(count, sizeof *v->contacts);
+        v->contact_capacity = v->contacts ? count : 0;
+    }
+    DEM_TRY(dem_visit_contacts(w, list_contact, &failed, error));
+    v->contacts_listed = !failed;
+    return failed ? dem_fail_memory(error) : DEM_OK;
 }
 
 // ---- bodies
@@ -518,26 +563,28 @@ dem_status dem_world_measure(dem_world *w, dem_error *error)
     double begin = dem_clock();
     dem_views *v = &w->views;
     size_t n = w->bodies.count;
+    if (!v->shape && !make_columns(v, n))
+        return dem_fail_memory(error);
     v->figures = (dem_figures){.time = dem_world_time(w), .step = w->steps};
     v->elastic = 0;
     v->since = (dem_energy){0};
-    v->contact_count = 0;
+    v->contacts_listed = false;
+    v->passed = 0;
     memset(v->force, 0, n * sizeof *v->force);
     memset(v->moment, 0, n * sizeof *v->moment);
     memset(v->coordination, 0, n * sizeof *v->coordination);
     for (size_t i = 0; i < w->walls.count; i++)
         v->walls[i] =
             (dem_wall_view){.position = w->walls.items[i].position, .orientation = w->walls.items[i].orientation};
-    tour t = {UINT32_MAX, UINT32_MAX, false, false};
+    tour t = {UINT32_MAX, UINT32_MAX, false};
     DEM_TRY(dem_visit_contacts(w, visit_contact, &t, error));
-    if (t.failed)
-        return dem_fail_memory(error);
     if (w->bonds)
         DEM_TRY(dem_bonds_measure(w, error));
     note_walls(w);
     gather(w);
     balance(w);
     if (w->regions) {
+        DEM_TRY(list_contacts(w, error));
         dem_region_views views = {dem_world_bodies(w), v->contacts, v->contact_count, NULL, 0};
         if (w->bonds)
             views.bonds = dem_world_bonds(w, &views.bond_count);
@@ -571,8 +618,10 @@ dem_body_view dem_world_bodies(const dem_world *w)
 
 const dem_contact *dem_world_contacts(const dem_world *w, size_t *count)
 {
-    *count = w->views.contact_count;
-    return w->views.contacts;
+    // a look, which changes nothing that a step could see
+    bool there = w->views.contacts_listed || list_contacts((dem_world *)w, NULL) == DEM_OK;
+    *count = there ? w->views.contact_count : 0;
+    return there ? w->views.contacts : NULL;
 }
 
 const dem_wall_view *dem_world_walls(const dem_world *w, size_t *count)

@@ -5,6 +5,7 @@
 #include "base/json.h"
 #include "base/memory.h"
 #include "dem/scene.h"
+#include "dem/world.h"
 #include "math/vec.h"
 
 /// As dem_scene_read, from a text (comments and trailing commas allowed). `name` is for messages; paths in it are
@@ -44,6 +45,12 @@ typedef struct dem_scene_entry {
     uint32_t hold;        ///< of the bodies of a file
     const char *group;    ///< of the bodies of a file
 } dem_scene_entry;
+
+/// Lets go of the bodies that came from files, which only placing them needs; the scene names the files as before.
+void dem_scene_forget_files(dem_scene *scene);
+
+/// As dem_world_create; the bodies of files are forgotten as soon as they are placed.
+dem_status dem_world_create_spending(const dem_ctx *ctx, dem_scene *scene, dem_world **world, dem_error *error);
 
 /// What a wall's definition does not tell of how it was given.
 typedef struct dem_wall_source {

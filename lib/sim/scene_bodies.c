@@ -1,5 +1,6 @@
 // "bodies": single ones, files of them, and fills.
 #include <math.h>
+#include <stdlib.h>
 
 #include "base/file.h"
 #include "sim/bodies_csv.h"
@@ -82,6 +83,28 @@ static dem_status read_fixed(dem_scene_reader *r, const dem_scene_value *v, cons
 }
 
 // ---- entries
+
+void dem_scene_forget_files(dem_scene *scene)
+{
+    struct dem_scene_owner *o = scene->owner;
+    size_t stay = 0;
+    if (!o || scene->bodies.bodies != o->bodies)
+        return;
+    for (size_t i = 0; i < o->entry_count; i++) {
+        dem_scene_entry *entry = &o->entries[i];
+        if (entry->kind == DEM_ENTRY_BODY) {
+            o->bodies[stay] = o->bodies[entry->first];
+            entry->first = stay++;
+        } else if (entry->kind == DEM_ENTRY_FILE)
+            entry->first = entry->count = 0;
+    }
+    dem_body_def *less = realloc(o->bodies, (stay + 1) * sizeof *less);
+    o->bodies = less ? less : o->bodies;
+    o->body_count = stay;
+    o->body_capacity = less ? stay + 1 : o->body_capacity;
+    scene->bodies.bodies = o->bodies;
+    scene->bodies.count = stay;
+}
 
 static const dem_field body_table[] = {
     [BODY_FILE] = {"file", dem_field_path, .at = offsetof(entry_text, file)},

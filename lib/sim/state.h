@@ -162,6 +162,9 @@ typedef struct dem_views {
     dem_quat *orientation;
     dem_contact *contacts;
     size_t contact_count, contact_capacity;
+    bool contacts_listed;  ///< since the last measure
+    double passed;         ///< largest overlap with a wall over the sphere's radius, now [-]
+    uint32_t passed_body, passed_wall;
     dem_wall_view *walls;
     dem_figures figures;
     dem_contact_record *records;

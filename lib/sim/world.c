@@ -12,6 +12,7 @@
 #include "sim/motion.h"
 #include "sim/place.h"
 #include "sim/population.h"
+#include "sim/scene.h"
 #include "sim/schemes.h"
 #include "sim/servo.h"
 #include "sim/timestep.h"
@@ -209,7 +210,8 @@ static dem_status check_places(const dem_world *w, dem_error *error)
     return DEM_OK;
 }
 
-static dem_status make_state(dem_world *w, const dem_scene *scene, dem_error *error)
+// `spent`: the scene, where what has been taken from it may be forgotten, or NULL
+static dem_status make_state(dem_world *w, const dem_scene *scene, dem_scene *spent, dem_error *error)
 {
     dem_body_def *defs = NULL;
     size_t count = 0;
@@ -219,6 +221,8 @@ static dem_status make_state(dem_world *w, const dem_scene *scene, dem_error *er
     DEM_TRY(dem_walls_create(w->ctx, scene, &w->walls, error));
     DEM_TRY(dem_population_create(w, scene, error));
     DEM_TRY(dem_place_bodies(w, scene, &defs, &count, error));
+    if (spent)
+        dem_scene_forget_files(spent);
     set_holds(w, scene, defs, count);
     set_features(w, scene, defs, count);
     size_t instances;
@@ -278,7 +282,8 @@ static dem_status check_schemes(const dem_scene *scene, dem_error *error)
     return dem_fail(error, DEM_USAGE, "integrator: there is no such scheme; take one of dem_translation, dem_rotation");
 }
 
-dem_status dem_world_create(const dem_ctx *ctx, const dem_scene *scene, dem_world **world, dem_error *error)
+static dem_status create(const dem_ctx *ctx, const dem_scene *scene, dem_scene *spent, dem_world **world,
+                         dem_error *error)
 {
     *world = NULL;
     DEM_TRY(check_schemes(scene, error));
@@ -300,7 +305,7 @@ dem_status dem_world_create(const dem_ctx *ctx, const dem_scene *scene, dem_worl
     w->periodic = scene->domain.periodic[0] || scene->domain.periodic[1] || scene->domain.periodic[2];
     for (int i = 0; i < DEM_PASSES; i++)
         w->clocks[i].name = pass_names[i];
-    dem_status status = make_state(w, scene, error);
+    dem_status status = make_state(w, scene, spent, error);
     if (status == DEM_OK)
         status = dem_world_measure(w, error);
     dem_world_reset_clocks(w);
@@ -309,6 +314,16 @@ dem_status dem_world_create(const dem_ctx *ctx, const dem_scene *scene, dem_worl
         *world = NULL;
     }
     return status;
+}
+
+dem_status dem_world_create(const dem_ctx *ctx, const dem_scene *scene, dem_world **world, dem_error *error)
+{
+    return create(ctx, scene, NULL, world, error);
+}
+
+dem_status dem_world_create_spending(const dem_ctx *ctx, dem_scene *scene, dem_world **world, dem_error *error)
+{
+    return create(ctx, scene, scene, world, error);
 }
 
 void dem_world_destroy(dem_world *w)

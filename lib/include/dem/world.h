@@ -162,11 +162,12 @@ typedef struct dem_inlet_view {
     bool over;             ///< no more will come
 } dem_inlet_view;
 
-/// Brings the views to time t; `contacts` of dem_world_contacts too. Errors: DEM_NO_MEMORY.
+/// Brings the views to time t. Errors: DEM_NO_MEMORY.
 DEM_API dem_status dem_world_measure(dem_world *world, dem_error *error);
 /// All as of the last dem_world_measure.
 DEM_API const dem_figures *dem_world_figures(const dem_world *world);
 DEM_API dem_body_view dem_world_bodies(const dem_world *world);
+/// Listed when they are first asked for, which is to be before the world steps again. NULL and 0: no memory for them.
 DEM_API const dem_contact *dem_world_contacts(const dem_world *world, size_t *count);
 DEM_API const dem_inlet_view *dem_world_inlets(const dem_world *world, size_t *count);
 /// All that were ever made, broken ones too.
