@@ -35,8 +35,8 @@ typedef struct dem_contacts dem_contacts;
 /// finite [1/kg].
 #define DEM_SOFT_HEAVIEST 1e-100
 
-/// The contacts of one pair of parts of bodies, or of a part and a wall, stand in a run. Its first one remembers for all; at a
-/// mesh, where they change places, all do.
+/// The contacts of one pair of parts of bodies, or of a part and a wall, stand in a run. Its first one remembers for
+/// all; at a mesh, where they change places, all do.
 typedef struct dem_soft_runs {
     uint32_t *first;  ///< [count + 1] contact, from the segment's first
     double *rise;     ///< [count] what D is above the deepest overlap at most [m]
@@ -57,7 +57,7 @@ typedef struct dem_soft_work {
     uint32_t *place;  ///< contacts of the rows of groups
     uint32_t *sorted;
     dem_soft_patch *patches;
-    double *share;  ///< [2 a patch] of its force that it bears, and by how much stiffer it may be; where there are parts
+    double *share;  ///< [2 a patch] of its force that it bears, by how much stiffer it may be; NULL: no parts
 } dem_soft_work;
 
 /// The weights that bodies of one shape and of about the same size share.

@@ -129,8 +129,31 @@ static void gather(const dem_world *w, const patch_members *m, double deepest, p
     p->gyration = sqrt(larger(square * per - v3_norm2(p->point), 0));
 }
 
+// a moment about the axis
+static void add_turn(const dem_world *w, size_t row, dem_vec3 axis, double factor, double a[6][6])
+{
+    const double *inertia = w->bodies.inertia + DEM_ROW * row;
+    dem_vec3 own = quat_unrotate(body_orientation(&w->bodies, row), axis);
+    vector6 turn = {{0}};
+    for (int i = 0; i < 3; i++)
+        turn.x[3 + i] = v3_get(own, i) * sqrt(inertia[1 + i]);
+    add_outer(a, factor, &turn);
+}
+
+// 1 / (I + m r^2) of both, as the kernels take it
+static double inverse_rolling(const dem_world *w, const patch_members *m)
+{
+    double sum = 0;
+    for (int side = 0; side < (m->form < 0 ? 2 : 1); side++) {
+        const double *inertia = w->bodies.inertia + DEM_ROW * m->row[side];
+        double mean = (inertia[1] + inertia[2] + inertia[3]) / 3, radius = w->soft.radius[m->row[side]];
+        sum += inertia[0] * mean / (inertia[0] + radius * radius * mean);
+    }
+    return larger(sum, DEM_SOFT_HEAVIEST);
+}
+
 static void add_tangents(const dem_world *w, const patch_members *m, const patch_problem *p, double factor,
-                         double twist, double a[6][6])
+                         double twist, double roll, double a[6][6])
 {
     const dem_contact_columns *c = &m->contacts->columns;
     size_t at = segment_place(m->s, m->begin), row = m->row[0];
@@ -138,14 +161,14 @@ static void add_tangents(const dem_world *w, const patch_members *m, const patch
     if (m->turned)
         arm = v3_sub(arm, m->shift);
     dem_vec3 u = v3_normal_to(p->normal), v = v3_cross(p->normal, u);
-    vector6 along = screw(w, row, arm, u), across = screw(w, row, arm, v), turn = {{0}};
+    vector6 along = screw(w, row, arm, u), across = screw(w, row, arm, v);
     add_outer(a, factor, &along);
     add_outer(a, factor, &across);
-    const double *inertia = w->bodies.inertia + DEM_ROW * row;
-    dem_vec3 own = quat_unrotate(body_orientation(&w->bodies, row), p->normal);
-    for (int i = 0; i < 3; i++)
-        turn.x[3 + i] = v3_get(own, i) * sqrt(inertia[1 + i]);
-    add_outer(a, twist, &turn);
+    add_turn(w, row, p->normal, twist, a);
+    if (roll > 0) {
+        add_turn(w, row, u, roll, a);
+        add_turn(w, row, v, roll, a);
+    }
 }
 
 static void add_patch(const dem_world *w, const patch_members *m, bool listed, double k[6][6], double c[6][6])
@@ -181,17 +204,20 @@ static void add_patch(const dem_world *w, const patch_members *m, bool listed, d
     for (int i = 0; i < 6; i++)
         for (int j = 0; j < 6; j++)
             k[i][j] += times * per_tau * p.spread[i][j] / p.sum;
-    if (kt > 0)
-        add_tangents(w, m, &p, times * kt, times * kt * p.gyration * p.gyration, k);
-    if (!w->laws.damped)
+    double arm2 = p.gyration * p.gyration + law[LAW_TWIST_RATIO] * reduced * depth;
+    double roll = law_roll_stiffness(law, reduced, kn);
+    if (kt > 0 || roll > 0)
+        add_tangents(w, m, &p, times * kt, times * kt * arm2, times * roll, k);
+    if (!w->laws.damped && !(roll > 0))
         return;
+    double rolling = roll > 0 ? law[LAW_ROLL_ZETA] * sqrt(roll / inverse_rolling(w, m)) : 0;
     double cn = law[LAW_RATE] * mass + law[LAW_ZETA] * sqrt(kn * mass);
     double ct = law[LAW_SLIDE_RATE] * mass + law[LAW_SLIDE_ZETA] * sqrt(kt * mass);
     for (int i = 0; i < 6; i++)
         for (int j = 0; j < 6; j++)
             c[i][j] += times * cn * p.spread[i][j] / p.sum;
-    if (ct > 0)
-        add_tangents(w, m, &p, times * ct, times * ct * p.gyration * p.gyration, c);
+    if (ct > 0 || rolling > 0)
+        add_tangents(w, m, &p, times * ct, times * ct * arm2, times * rolling, c);
 }
 
 // the groups of a mesh, deepest first

@@ -144,8 +144,10 @@ static void take_soft_springs(const dem_soft *soft, const dem_contacts *contacts
                 break;
         }
         if (k < end && c->sphere_b[at] == items[i].sphere_b &&
-            soft_part(soft, c->sphere_a[at]) == soft_part(soft, items[i].sphere_a))
+            soft_part(soft, c->sphere_a[at]) == soft_part(soft, items[i].sphere_a)) {
             items[i].history = dem_history_get(c, at);
+            items[i].old = (uint32_t)(at - s->begin) + 1;
+        }
     }
 }
 
