@@ -41,7 +41,7 @@ static void volumes_converge_to_those_of_the_bodies(void **state)
     dem_ball balls[4] = {{{1, 1, 0.5}, 0.4}, {{3, 1, 0.5}, 0.3}, {{5, 1, 1}, 0.5}, {{5.4, 1, 1}, 0.5}};
     dem_ball_union u;
     dem_error error;
-    check_ok(dem_ball_union_compute(balls, 4, false, &u, &error), error);
+    check_ok(dem_ball_union_compute(balls, 4, false, 1, &u, &error), error);
     double inside = 4 * DEM_PI / 3 * (0.064 + 0.027 / 2);
     for (int i = 0; i < 6; i++) {
         dem_bundle_volumes v = measure(&box, balls, 4, random_turn(&r), 0.01, 1);
@@ -94,7 +94,7 @@ static void balls_in_a_row_are_told_apart(void **state)
         balls[i] = (dem_ball){{0, 0, (double)((i * 3) % 7)}, i % 2 ? 0.4 : 0.6};
     dem_ball_union u;
     dem_error error;
-    check_ok(dem_ball_union_compute(balls, 7, false, &u, &error), error);
+    check_ok(dem_ball_union_compute(balls, 7, false, 1, &u, &error), error);
     dem_bundle_volumes v = measure(&box, balls, 7, (dem_quat){1, 0, 0, 0}, 0.005, 1);
     check_close(v.balls, u.moments.volume, 5e-4);
     dem_ball_union_release(&u);

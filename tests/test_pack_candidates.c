@@ -53,8 +53,8 @@ static void greedy_takes_the_ball_of_the_largest_gain_each_time(void **state)
     check_ok(dem_pack_grain_open(&box, &grain, &error), error);
     check_ok(dem_lattice_build(&grain, 1500, &lattice, &error), error);
     check_ok(dem_samples_build(&grain, &lattice, 1024, 512, &samples, &error), error);
-    check_ok(dem_candidates_build(&grain, &samples, 200, 1, &candidates, &error), error);
     const dem_pack_kernels *kernels = dem_pack_kernels_choose(NULL);
+    check_ok(dem_candidates_build(&grain, &samples, kernels, 200, 1, &candidates, &error), error);
     const double inflations[2] = {0, 0.02};
     dem_ball chosen[10];
     size_t count;

@@ -67,7 +67,7 @@ static void volumes_by_lines_are_the_exact_ones(void **state)
     dem_line_volumes v = measure(&f, &lines, NULL);
     dem_ball_union exact;
     dem_error error;
-    check_ok(dem_ball_union_compute(f.balls, BALLS, false, &exact, &error), error);
+    check_ok(dem_ball_union_compute(f.balls, BALLS, false, 1, &exact, &error), error);
     check_close(v.grain, f.grain.moments.volume, 1e-4);    // lines 1/200 of d_eq apart
     check_close(v.covered, exact.moments.volume, 1e-4);
     check_near(v.difference, v.grain + v.covered - 2 * v.common, 1e-12);

@@ -26,7 +26,7 @@ static dem_ball_union compute(const dem_ball *balls, size_t count)
 {
     dem_ball_union u;
     dem_error error;
-    check_ok(dem_ball_union_compute(balls, count, true, &u, &error), error);
+    check_ok(dem_ball_union_compute(balls, count, true, 1, &u, &error), error);
     check(u.consistent);
     return u;
 }

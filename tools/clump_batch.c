@@ -122,24 +122,40 @@ static void run_task(batch *b, task *t, int threads)
     }
 }
 
-// grains run side by side, each on one core; alone, a grain gets them all
+// told of in order: `told_of` counts the tasks in front that are
+static void finish_task(batch *b, task *tasks, size_t count, size_t i, size_t *told_of)
+{
+    pthread_mutex_lock(&b->lock);
+    tasks[i].done = true;
+    for (; *told_of < count && tasks[*told_of].done; ++*told_of)
+        take_results(b, &tasks[*told_of]);
+    pthread_mutex_unlock(&b->lock);
+    cli_job_done(&b->session);
+}
+
+// Grains run side by side, each on one core; alone, a grain gets them all: outside of any team, as inside of one each
+// loop in parallel would make its threads anew.
 static void run_tasks(batch *b, task *tasks, size_t count)
 {
     dem_ctx all = cli_ctx(&b->session, NULL);
-    size_t told_of = 0;  // before it everything is in the table
+    size_t told_of = 0;
     b->session.jobs += count;
-#pragma omp parallel for schedule(dynamic, 1) num_threads(dem_threads(&all)) if (count > 1)
+    if (count == 1 && !cli_interrupted()) {
+        run_task(b, &tasks[0], 0);
+        finish_task(b, tasks, count, 0, &told_of);
+        return;
+    }
+#pragma omp parallel for schedule(dynamic, 1) num_threads(dem_threads(&all))
     for (size_t i = 0; i < count; i++) {
         bool stop = cli_interrupted();
         if (!stop)
-            run_task(b, &tasks[i], count > 1 ? 1 : 0);
-        pthread_mutex_lock(&b->lock);
-        b->undone += stop;
-        tasks[i].done = true;
-        for (; told_of < count && tasks[told_of].done; told_of++)
-            take_results(b, &tasks[told_of]);
-        pthread_mutex_unlock(&b->lock);
-        cli_job_done(&b->session);
+            run_task(b, &tasks[i], 1);
+        else {
+            pthread_mutex_lock(&b->lock);
+            b->undone++;
+            pthread_mutex_unlock(&b->lock);
+        }
+        finish_task(b, tasks, count, i, &told_of);
     }
 }
 

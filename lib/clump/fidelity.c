@@ -107,7 +107,7 @@ dem_status dem_fidelity_gap(const dem_ctx *ctx, const dem_mesh *mesh, const dem_
     subject s;
     dem_ball_union whole;
     DEM_TRY(subject_make(&s, mesh, balls, count, error));
-    dem_status status = dem_ball_union_compute(s.balls, count, false, &whole, error);
+    dem_status status = dem_ball_union_compute(s.balls, count, false, 1, &whole, error);
     if (status == DEM_OK) {
         status = gap_measure(&s, whole.moments.volume, lines, dem_threads(ctx), gap, error_estimate, error);
         dem_ball_union_release(&whole);

@@ -10,12 +10,17 @@ static const double largest_share = 0.05;  // of the balls exchanged in one brea
 static const double hopeless = 1.05;       // energy after a short relaxation, against the one to beat
 static const double jitter = 0.6;          // of the removal costs
 
-// a surface block drawn by its energy
-static size_t draw_block(dem_packing *p, const dem_pack_state *state)
+static double surface_energy(const dem_packing *p, const dem_pack_state *state)
 {
     double total = 0;
     for (size_t b = 0; b < p->samples.surface_blocks; b++)
         total += state->block_energy[b];
+    return total;
+}
+
+// a surface block drawn by its energy
+static size_t draw_block(dem_packing *p, const dem_pack_state *state, double total)
+{
     double mark = random_uniform(&p->random) * total;
     for (size_t b = 0; b < p->samples.surface_blocks; b++) {
         mark -= state->block_energy[b];
@@ -25,10 +30,11 @@ static size_t draw_block(dem_packing *p, const dem_pack_state *state)
     return p->samples.surface_blocks - 1;
 }
 
-static bool out_of_reach(const dem_block_bound *bound, dem_ball ball, double farther)
+static bool out_of_reach(const dem_block_bound *bound, const float ball[4], float farther)
 {
-    double d = v3_distance(v3((double)bound->x, (double)bound->y, (double)bound->z), ball.centre);
-    return d > ball.radius + (double)bound->radius + farther;
+    float x = bound->x - ball[0], y = bound->y - ball[1], z = bound->z - ball[2];
+    float reach = ball[3] + bound->radius + farther;
+    return x * x + y * y + z * z > reach * reach;
 }
 
 static dem_charge block_charge(const dem_packing *p, size_t block)
@@ -39,7 +45,7 @@ static dem_charge block_charge(const dem_packing *p, size_t block)
 }
 
 // how far a sample may lie outside the union for a ball that does not reach its block to matter [d_eq]
-static const double farthest_sample = 0.3;
+static const float farthest_sample = 0.3f;
 
 // by how much the energy would fall with one more ball
 static double insertion_gain(const dem_packing *p, const dem_pack_state *state, dem_ball ball)
@@ -48,7 +54,7 @@ static double insertion_gain(const dem_packing *p, const dem_pack_state *state, 
     float columns[4] = {(float)ball.centre.x, (float)ball.centre.y, (float)ball.centre.z, (float)ball.radius};
     for (size_t b = 0; b < p->samples.block_count; b++) {
         float f[DEM_BLOCK];
-        if (out_of_reach(&p->samples.bounds[b], ball, 0.08))
+        if (out_of_reach(&p->samples.bounds[b], columns, 0.08f))
             continue;
         dem_charge charge = block_charge(p, b);
         if (p->kernels->with_ball(&p->samples.blocks[b], columns, state->f + b * DEM_BLOCK, f))
@@ -62,7 +68,7 @@ static void take_in(dem_packing *p, dem_pack_state *state, dem_ball ball)
     float columns[4] = {(float)ball.centre.x, (float)ball.centre.y, (float)ball.centre.z, (float)ball.radius};
     for (size_t b = 0; b < p->samples.block_count; b++) {
         float f[DEM_BLOCK], *old = state->f + b * DEM_BLOCK;
-        if (out_of_reach(&p->samples.bounds[b], ball, farthest_sample) ||
+        if (out_of_reach(&p->samples.bounds[b], columns, farthest_sample) ||
             !p->kernels->with_ball(&p->samples.blocks[b], columns, old, f))
             continue;
         for (int l = 0; l < DEM_BLOCK; l++)
@@ -78,26 +84,45 @@ static void take_in(dem_packing *p, dem_pack_state *state, dem_ball ball)
     dem_pack_state_add(state, ball);
 }
 
+// balls that may be inserted, and what each would gain
+typedef struct tries {
+    const dem_packing *p;
+    const dem_pack_state *state;
+    dem_ball balls[TRIES];  // radius 0: none
+    double gains[TRIES];
+} tries;
+
+static void draw_tries(dem_packing *p, tries *t)
+{
+    double total = surface_energy(p, t->state);
+    for (int k = 0; k < TRIES; k++) {
+        size_t b = draw_block(p, t->state, total);
+        uint32_t first = p->candidates.at_block[b], number = p->candidates.at_block[b + 1] - first;
+        t->balls[k].radius = 0;
+        if (!number)
+            continue;
+        t->balls[k] = p->candidates.balls[first + random_below(&p->random, number)];
+        t->balls[k].radius += p->inflations[random_below(&p->random, p->inflation_count)];
+    }
+}
+
+static void try_one(void *user, int part)
+{
+    tries *t = user;
+    t->gains[part] = t->balls[part].radius > 0 ? insertion_gain(t->p, t->state, t->balls[part]) : 0;
+}
+
 void dem_pack_insert(dem_packing *p, dem_pack_state *state, size_t count)
 {
+    tries t = {.p = p, .state = state};
     for (size_t k = 0; k < count && state->count < state->capacity; k++) {
-        dem_ball best = {.radius = 0};
-        double most = 0;
-        for (int t = 0; t < TRIES; t++) {
-            size_t b = draw_block(p, state);
-            uint32_t first = p->candidates.at_block[b], number = p->candidates.at_block[b + 1] - first;
-            if (!number)
-                continue;
-            dem_ball ball = p->candidates.balls[first + random_below(&p->random, number)];
-            ball.radius += p->inflations[random_below(&p->random, p->inflation_count)];
-            double gain = insertion_gain(p, state, ball);
-            if (gain > most) {
-                most = gain;
-                best = ball;
-            }
-        }
-        if (best.radius > 0)
-            take_in(p, state, best);
+        int best = 0;
+        draw_tries(p, &t);
+        dem_crew_run(p->crew, TRIES, try_one, &t);
+        for (int i = 1; i < TRIES; i++)
+            best = t.gains[i] > t.gains[best] ? i : best;
+        if (t.gains[best] > 0)
+            take_in(p, state, t.balls[best]);
     }
 }
 

@@ -65,40 +65,17 @@ double dem_medial_radius(const dem_tree *tree, dem_vec3 p, dem_vec3 n)
     return shrink_in_tree(tree, p, n, largest_radius);
 }
 
-/// Some of the surface samples, padded to full lanes.
-typedef struct sparse {
-    float *x, *y, *z;
-    size_t count;
-} sparse;
-
-// Shrinks to the sparse points that lie deepest inside, one after the other: what is left for the tree is a ball hardly
+// Shrinks to some of the samples that lie deepest inside, one after the other: what is left for the tree is a ball hardly
 // too large, which meets few of its boxes.
-static double shrink_to_points(const sparse *points, dem_vec3 p, dem_vec3 n)
+static double shrink_to_points(const dem_pack_kernels *kernels, const dem_point_columns *points, dem_vec3 p, dem_vec3 n)
 {
-    const float px = (float)p.x, py = (float)p.y, pz = (float)p.z, nx = (float)n.x, ny = (float)n.y, nz = (float)n.z;
+    const float at[3] = {(float)p.x, (float)p.y, (float)p.z}, out[3] = {(float)n.x, (float)n.y, (float)n.z};
     double r = largest_radius;
     for (int i = 0; i < POINT_SHRINKS; i++) {
-        // depth d of a point s with e = p - s: |s - centre|^2 = r^2 - d, where d = 2 r n.e - e.e
-        float two_r = (float)(2 * r), least = (float)(r * r * (1 - (1 - tolerance) * (1 - tolerance)));
-        float deepest[DEM_LANES], touching[DEM_LANES];
-        for (int l = 0; l < DEM_LANES; l++) {
-            deepest[l] = least;
-            touching[l] = (float)r;
-        }
-        for (size_t k = 0; k < points->count; k += DEM_LANES)
-            for (int l = 0; l < DEM_LANES; l++) {
-                float ex = px - points->x[k + (size_t)l], ey = py - points->y[k + (size_t)l];
-                float ez = pz - points->z[k + (size_t)l], e2 = ex * ex + ey * ey + ez * ez;
-                float low = ex * nx + ey * ny + ez * nz, depth = two_r * low - e2;
-                touching[l] = depth > deepest[l] ? e2 / (2 * low) : touching[l];
-                deepest[l] = depth > deepest[l] ? depth : deepest[l];
-            }
-        int at = 0;
-        for (int l = 1; l < DEM_LANES; l++)
-            at = deepest[l] > deepest[at] ? l : at;
-        if (!(deepest[at] > least))
+        float least = (float)(r * r * (1 - (1 - tolerance) * (1 - tolerance))), touching;
+        if (!kernels->deepest(points, at, out, (float)(2 * r), least, &touching))
             break;
-        r = fmin(r, (double)touching[at]);
+        r = fmin(r, (double)touching);
     }
     // the points are rounded
     return fmin(largest_radius, r * (1 + tolerance));
@@ -171,7 +148,7 @@ static dem_status sort_by_block(const touching *points, size_t count, size_t blo
 }
 
 // evenly out of all blocks
-static bool take_sparse(const dem_samples *samples, sparse *few)
+static bool take_sparse(const dem_samples *samples, dem_point_columns *few)
 {
     size_t all = samples->surface_blocks * DEM_BLOCK, step = all / SPARSE_POINTS + 1;
     few->count = all / step / DEM_LANES * DEM_LANES;
@@ -190,15 +167,15 @@ static bool take_sparse(const dem_samples *samples, sparse *few)
     return true;
 }
 
-dem_status dem_candidates_build(const dem_pack_grain *grain, const dem_samples *samples, size_t count, int threads,
-                                dem_candidates *candidates, dem_error *error)
+dem_status dem_candidates_build(const dem_pack_grain *grain, const dem_samples *samples, const dem_pack_kernels *kernels,
+                                size_t count, int threads, dem_candidates *candidates, dem_error *error)
 {
     *candidates = (dem_candidates){0};
     const dem_mesh *shell = &grain->shell;
     touching *points = dem_alloc_zero(count, sizeof *points);
     if (!points)
         return dem_fail_memory(error);
-    sparse few;
+    dem_point_columns few;
     if (!take_sparse(samples, &few)) {
         free(points);
         return dem_fail_memory(error);
@@ -206,7 +183,7 @@ dem_status dem_candidates_build(const dem_pack_grain *grain, const dem_samples *
     dem_surface_spread(shell_corners, shell, shell->triangle_count, shell_area(shell), count, keep_touching, points);
 #pragma omp parallel for num_threads(threads) schedule(dynamic, 64)
     for (size_t i = 0; i < count; i++) {
-        double r = shrink_to_points(&few, points[i].point, points[i].normal);
+        double r = shrink_to_points(kernels, &few, points[i].point, points[i].normal);
         points[i].radius = shrink_in_tree(&grain->tree, points[i].point, points[i].normal, r);
         points[i].block = nearest_block(samples, points[i].point);
     }

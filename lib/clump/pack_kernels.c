@@ -327,6 +327,33 @@ static int32_t approach(const dem_ball_columns *balls, uint32_t joined, float *r
     return best;
 }
 
+// with e = p - s of a point s: |s - centre|^2 = r^2 - d, where d = 2 r n.e - e.e
+static bool deepest(const dem_point_columns *points, const float p[3], const float n[3], float two_r, float least,
+                    float *radius)
+{
+    float depth[DEM_LANES], square[DEM_LANES], height[DEM_LANES], px = p[0], py = p[1], pz = p[2];
+    float nx = n[0], ny = n[1], nz = n[2];
+    for (int l = 0; l < DEM_LANES; l++) {
+        depth[l] = least;
+        square[l] = height[l] = 0;
+    }
+    for (size_t k = 0; k < points->count; k += DEM_LANES) {
+        const float *restrict x = points->x + k, *restrict y = points->y + k, *restrict z = points->z + k;
+        for (int l = 0; l < DEM_LANES; l++) {
+            float ex = px - x[l], ey = py - y[l], ez = pz - z[l], e2 = ex * ex + ey * ey + ez * ez;
+            float low = ex * nx + ey * ny + ez * nz, d = two_r * low - e2;
+            square[l] = d > depth[l] ? e2 : square[l];
+            height[l] = d > depth[l] ? low : height[l];
+            depth[l] = d > depth[l] ? d : depth[l];
+        }
+    }
+    int at = 0;
+    for (int l = 1; l < DEM_LANES; l++)
+        at = depth[l] > depth[at] ? l : at;
+    *radius = square[at] / (2 * height[at]);
+    return depth[at] > least;
+}
+
 // points i0..i1 of one row: inside and not yet covered minus outside and not yet covered
 static int64_t row_gain(const dem_lattice *lattice, uint32_t row, int32_t i0, int32_t i1, uint64_t *cover)
 {
@@ -405,6 +432,7 @@ const dem_pack_kernels DEM_LEVEL_OF(dem_pack_kernels) = {
     .with_ball = with_ball,
     .equations = equations,
     .approach = approach,
+    .deepest = deepest,
     .lattice_gain = lattice_gain,
     .lines = &DEM_LEVEL_OF(dem_line_kernels),
 };

@@ -59,6 +59,12 @@ typedef struct dem_line_task {
     bool failed;             ///< out of memory
 } dem_line_task;
 
+/// Points in full lanes.
+typedef struct dem_point_columns {
+    float *x, *y, *z;
+    size_t count;
+} dem_point_columns;
+
 /// Work space of `gather_near` and `list_near`: [padded balls].
 typedef struct dem_near_work {
     float *distance;
@@ -102,6 +108,10 @@ typedef struct dem_pack_kernels {
     /// For a growing tree: lowers reach[i], the gap of ball i to the nearest ball of the tree, where ball `joined` is
     /// nearer. Balls of the tree have reach[i] <= -1e9. Returns the ball of the least other one, or -1.
     int32_t (*approach)(const dem_ball_columns *balls, uint32_t joined, float *reach, int32_t *nearest);
+    /// The deepest of some points (full lanes) in the ball that touches p (unit normal n), and the radius of the ball
+    /// through both. Depth is r^2 - distance^2 from the centre. False: none is deeper than `least`.
+    bool (*deepest)(const dem_point_columns *points, const float p[3], const float n[3], float two_r, float least,
+                    float *radius);
     /// By how many points the symmetric difference of grain and covered set shrinks with this ball; marks its points in
     /// `cover` unless NULL.
     int64_t (*lattice_gain)(const dem_lattice *lattice, dem_ball ball, uint64_t *cover);

@@ -69,7 +69,7 @@ dem_status dem_moment_rows_set(dem_packing *p, const dem_pack_state *state, size
                                dem_error *error)
 {
     dem_ball_union u;
-    DEM_TRY(dem_ball_union_compute(state->balls, state->count, false, &u, error));
+    DEM_TRY(dem_ball_union_compute(state->balls, state->count, false, dem_threads(p->ctx), &u, error));
     double want[DEM_MOMENT_COUNT], have[DEM_MOMENT_COUNT];
     const dem_moments *m = &p->grain->moments;
     list_moments(*m, want);

@@ -122,8 +122,9 @@ dem_status dem_packing_open(const dem_ctx *ctx, const dem_pack_grain *grain, con
         status = dem_samples_build(grain, &p->lattice, surface, interior, &p->samples, error);
     dem_laps_end(&p->laps, "samples");
     if (status == DEM_OK)
-        status = dem_candidates_build(grain, &p->samples, at_least(FEWEST_CANDIDATES, CANDIDATES_PER_SPHERE * n),
-                                      dem_threads(ctx), &p->candidates, error);
+        status = dem_candidates_build(grain, &p->samples, p->kernels,
+                                      at_least(FEWEST_CANDIDATES, CANDIDATES_PER_SPHERE * n), dem_threads(ctx),
+                                      &p->candidates, error);
     dem_laps_end(&p->laps, "candidates");
     if (status == DEM_OK) {
         p->crew = dem_crew_create(dem_threads(ctx));

@@ -15,7 +15,7 @@ dem_status dem_balls_union(const dem_ball *balls, size_t count, dem_union *resul
     for (size_t i = 0; i < count; i++)
         local[i] = (dem_ball){v3_sub(balls[i].centre, origin), balls[i].radius};
     dem_ball_union u;
-    dem_status status = dem_ball_union_compute(local, count, false, &u, error);
+    dem_status status = dem_ball_union_compute(local, count, false, 1, &u, error);
     free(local);
     if (status != DEM_OK)
         return status;

@@ -81,7 +81,7 @@ static void patch_cones(dem_boundary *b)
 dem_status dem_boundary_build(dem_boundary *b, const dem_ball *balls, size_t count, dem_error *error)
 {
     *b = (dem_boundary){.balls = balls, .count = count};
-    DEM_TRY(dem_ball_union_compute(balls, count, true, &b->whole, error));
+    DEM_TRY(dem_ball_union_compute(balls, count, true, 1, &b->whole, error));
     dem_status status = dem_ball_tree_build(&b->tree, balls, count, error);
     size_t arcs = b->whole.arc_count;
     b->cones = dem_alloc(count, sizeof *b->cones);

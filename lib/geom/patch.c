@@ -20,6 +20,8 @@
 #define SLACK 1e-9
 // circles whose axes and heights differ by less than this are one; their ends would be noise [-]
 #define SAME 1e-14
+// a cap that is inside another one by more than this is so whatever rounding does [-]
+#define CLEARLY 1e-9
 // circles that overlap by less than the square root of this only touch: the ends could not be told apart [-]
 #define TOUCH 1e-28
 
@@ -56,8 +58,8 @@ typedef struct arc {
 struct dem_patch_work {
     const dem_ball_tree *tree;
     uint32_t *near;
-    cap *caps;
-    size_t cap_room, cap_count;
+    cap *caps, *found;  // those that count, and those not yet looked at
+    size_t cap_room, found_room, cap_count;
     crossing *crossings;
     size_t crossing_room, crossing_count;
     hidden *hidden;
@@ -89,6 +91,7 @@ void dem_patch_work_destroy(dem_patch_work *w)
         return;
     free(w->near);
     free(w->caps);
+    free(w->found);
     free(w->crossings);
     free(w->hidden);
     free(w->start);
@@ -130,14 +133,6 @@ static bool cap_make(const dem_ball *balls, uint32_t i, uint32_t j, cap *c, bool
     return c->s > 0;
 }
 
-static int cap_order(const void *left, const void *right)
-{
-    const cap *a = left, *b = right;
-    if (a->h != b->h)
-        return a->h < b->h ? -1 : 1;
-    return a->ball < b->ball ? -1 : 1;
-}
-
 typedef enum relation { APART, CROSSING, NESTED, COVERING } relation;
 
 // How the cap j lies to k, which is at least as large. The cap k is turned to the side of j first (its complement
@@ -164,25 +159,52 @@ static relation cap_relate(const cap *j, const cap *k, crossing *x)
     return CROSSING;
 }
 
-// Collects the caps of ball i that no other single cap contains, with their crossings.
+// The caps of ball i. False: another ball covers all of it, or no memory.
+static bool caps_find(dem_patch_work *w, uint32_t i, size_t *count, bool *memory)
+{
+    const dem_ball *balls = w->tree->balls;
+    size_t near = dem_ball_tree_near(w->tree, balls[i], 0, w->near);
+    bool swallowed = false;
+    *count = 0;
+    *memory = reserve(&w->caps, &w->cap_room, near, sizeof *w->caps) &&
+              reserve(&w->found, &w->found_room, near, sizeof *w->found);
+    for (size_t k = 0; *memory && k < near && !swallowed; k++)
+        if (w->near[k] != i)
+            *count += cap_make(balls, i, w->near[k], &w->found[*count], &swallowed);
+    return *memory && !swallowed;
+}
+
+// Takes the largest cap out of those found, and with it most of those it contains: cos(angle between the axes) >
+// cos(difference of the openings), by more than rounding could do. Close calls are left to cap_relate.
+static cap take_largest(cap *found, size_t *count)
+{
+    size_t largest = 0, left = 0;
+    for (size_t k = 1; k < *count; k++) {
+        const cap *a = &found[k], *b = &found[largest];
+        largest = a->h != b->h ? (a->h < b->h ? k : largest) : a->ball < b->ball ? k : largest;
+    }
+    cap c = found[largest];
+    for (size_t k = 0; k < *count; k++)
+        if (k != largest && !(v3_dot(found[k].u, c.u) > c.h * found[k].h + c.s * found[k].s + CLEARLY)) {
+            if (left < k)
+                found[left] = found[k];
+            left++;
+        }
+    *count = left;
+    return c;
+}
+
+// Collects the caps of ball i that no other single cap contains, with their crossings, largest first.
 // False: the ball has no surface of its own. Sets *memory to false when there is none left.
 static bool caps_collect(dem_patch_work *w, uint32_t i, bool *memory)
 {
-    const dem_ball *balls = w->tree->balls;
-    size_t near = dem_ball_tree_near(w->tree, balls[i], 0, w->near), kept = 0;
-    bool swallowed = false;
+    size_t kept = 0, found;
     w->cap_count = w->crossing_count = 0;
-    if (!(*memory = reserve(&w->caps, &w->cap_room, near, sizeof *w->caps)))
+    if (!caps_find(w, i, &found, memory))
         return false;
-    for (size_t k = 0; k < near && !swallowed; k++)
-        if (w->near[k] != i)
-            w->cap_count += cap_make(balls, i, w->near[k], &w->caps[w->cap_count], &swallowed);
-    if (swallowed)
-        return false;
-    qsort(w->caps, w->cap_count, sizeof *w->caps, cap_order);
-    for (size_t j = 0; j < w->cap_count; j++) {
+    while (found) {
         size_t crossings = w->crossing_count;
-        cap c = w->caps[j];
+        cap c = take_largest(w->found, &found);
         relation r = APART;
         if (!(*memory = reserve(&w->crossings, &w->crossing_room, crossings + kept, sizeof *w->crossings)))
             return false;

@@ -13,6 +13,8 @@
 // how far balls move, in radii, when they are [-]
 #define SHAKE 1e-11
 
+enum { FEW_PATCHES = 64, PATCHES_AT_ONCE = 8 };  // done alone; a thread's share at a time
+
 typedef struct rooms {
     size_t arcs, caps, cap_count;
 } rooms;
@@ -105,33 +107,64 @@ dem_status dem_balls_check(const dem_ball *balls, size_t count, dem_error *error
     return DEM_OK;
 }
 
-static bool union_compute(const dem_ball_tree *tree, bool want_arcs, dem_ball_union *result)
+// all patches, and with them the creases if they are wanted; *doubt is that of the worst one
+static bool patches_and_creases(const dem_ball_tree *tree, bool want_arcs, dem_ball_union *result, double *doubt)
+{
+    rooms room = {0};
+    dem_patch_work *w = dem_patch_work_create(tree);
+    bool done = w != NULL;
+    for (uint32_t i = 0; done && i < tree->boxes.count; i++) {
+        done = dem_patch_compute(w, i, &result->patches[i]) && (!want_arcs || creases_export(w, i, result, &room));
+        *doubt = fmax(*doubt, dem_patch_doubt(w));
+    }
+    dem_patch_work_destroy(w);
+    return done;
+}
+
+static bool patches_by_threads(const dem_ball_tree *tree, int threads, dem_patch *patches, double *doubt)
+{
+    bool done = true;
+    double most = 0;
+#pragma omp parallel num_threads(threads) reduction(&& : done) reduction(max : most)
+    {
+        dem_patch_work *w = dem_patch_work_create(tree);
+        done = w != NULL;
+#pragma omp for schedule(dynamic, PATCHES_AT_ONCE)
+        for (uint32_t i = 0; i < tree->boxes.count; i++) {
+            done = done && dem_patch_compute(w, i, &patches[i]);
+            most = done ? fmax(most, dem_patch_doubt(w)) : most;
+        }
+        dem_patch_work_destroy(w);
+    }
+    *doubt = most;
+    return done;
+}
+
+static bool union_compute(const dem_ball_tree *tree, bool want_arcs, int threads, dem_ball_union *result)
 {
     const dem_ball *balls = tree->balls;
     size_t count = tree->boxes.count;
-    rooms room = {0};
-    dem_patch_work *w = dem_patch_work_create(tree);
     *result = (dem_ball_union){.patches = dem_alloc(count, sizeof *result->patches)};
     if (want_arcs)
         result->cap_start = dem_alloc_zero(count + 1, sizeof *result->cap_start);
-    bool done = w && result->patches && (!want_arcs || result->cap_start);
+    if (!result->patches || (want_arcs && !result->cap_start))
+        return false;
+    double doubt = 0;
+    bool alone = want_arcs || threads < 2 || count < FEW_PATCHES;
+    if (alone ? !patches_and_creases(tree, want_arcs, result, &doubt)
+              : !patches_by_threads(tree, threads, result->patches, &doubt))
+        return false;
     dem_vec3 origin = {0};
     for (size_t i = 0; i < count; i++)
         origin = v3_along(origin, 1.0 / (double)count, balls[i].centre);
     dem_moments moments = {0};
-    double doubt = 0;
-    for (uint32_t i = 0; done && i < count; i++) {
-        dem_patch *p = &result->patches[i];
+    for (size_t i = 0; i < count; i++) {
+        const dem_patch *p = &result->patches[i];
         double r = balls[i].radius;
-        done = dem_patch_compute(w, i, p) && (!want_arcs || creases_export(w, i, result, &room));
         moments_add(&moments, p, v3_sub(balls[i].centre, origin), r);
         result->area += r * r * p->area;
         result->redundant += p->area == 0;
-        doubt = fmax(doubt, dem_patch_doubt(w));
     }
-    dem_patch_work_destroy(w);
-    if (!done)
-        return false;
     result->consistent =
         doubt <= CLOSURE && boundary_closes(balls, result->patches, count, origin, moments.volume, result->area);
     result->moments = moments_shift(moments, origin);
@@ -149,20 +182,20 @@ static void shake(const dem_ball *balls, size_t count, double size, dem_ball *sh
     }
 }
 
-dem_status dem_ball_union_compute(const dem_ball *balls, size_t count, bool want_arcs, dem_ball_union *result,
-                                  dem_error *error)
+dem_status dem_ball_union_compute(const dem_ball *balls, size_t count, bool want_arcs, int threads,
+                                  dem_ball_union *result, dem_error *error)
 {
     dem_ball_tree tree;
     dem_ball *shaken = NULL;
     *result = (dem_ball_union){0};
     DEM_TRY(dem_ball_tree_build(&tree, balls, count, error));
-    bool done = union_compute(&tree, want_arcs, result);
+    bool done = union_compute(&tree, want_arcs, threads, result);
     // only many circles that touch in one point get here: their ends are known to 1e-8 and no better
     if (done && !result->consistent && (shaken = dem_alloc(count, sizeof *shaken)) != NULL) {
         dem_ball_union_release(result);
         shake(balls, count, SHAKE, shaken);
         tree.balls = shaken;
-        done = union_compute(&tree, want_arcs, result);
+        done = union_compute(&tree, want_arcs, threads, result);
     }
     dem_ball_tree_release(&tree);
     free(shaken);

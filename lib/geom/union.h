@@ -47,9 +47,9 @@ dem_status dem_balls_check(const dem_ball *balls, size_t count, dem_error *error
 
 /// Exact to rounding, coincidences included; work and memory grow with the overlapping pairs. Far from the origin the
 /// moments about it lose what their size loses, patches and area do not. `want_arcs` also lists the crease
-/// arcs and the caps.
-dem_status dem_ball_union_compute(const dem_ball *balls, size_t count, bool want_arcs, dem_ball_union *result,
-                                  dem_error *error);
+/// arcs and the caps, which one thread does whatever `threads` says. The same bits for any number of them.
+dem_status dem_ball_union_compute(const dem_ball *balls, size_t count, bool want_arcs, int threads,
+                                  dem_ball_union *result, dem_error *error);
 void dem_ball_union_release(dem_ball_union *result);
 
 /// Connected pieces of balls whose overlap (r_i + r_j - distance) exceeds `margin`; `piece` (may be NULL) receives

@@ -311,7 +311,7 @@ static void keep_best(frame *best, size_t *count, const frame *f)
 }
 
 // the frames of least volume about many axes
-static size_t search(const point_set *few, frame *best)
+static size_t search(const point_set *few, int threads, frame *best)
 {
     size_t count = 0;
     dem_sym3 spread = {0};
@@ -320,12 +320,21 @@ static size_t search(const point_set *few, frame *best)
     double values[3];
     dem_vec3 principal[3];
     dem_sym3_eigen(spread, values, principal);
-    for (int i = -6; i < SEARCH_AXES; i++) {
-        dem_vec3 axis = i >= 0 ? spiral(i, SEARCH_AXES) : i >= -3 ? principal[i + 3] : v3(i == -4, i == -5, i == -6);
-        frame f = frame_about(axis);
-        if (turn(few, &f))
-            keep_best(best, &count, &f);
+    frame all[SEARCH_AXES + 6];
+#pragma omp parallel for num_threads(threads) schedule(dynamic, 16) if (threads > 1)
+    for (int k = 0; k < SEARCH_AXES + 6; k++) {
+        flat_point flat[EXTREME_POINTS], hull[2 * EXTREME_POINTS];
+        point_set own = {few->points, few->count, flat, hull};
+        int i = k - 6;
+        all[k] = frame_about(i >= 0    ? spiral(i, SEARCH_AXES)
+                             : i >= -3 ? principal[i + 3]
+                                       : v3(i == -4, i == -5, i == -6));
+        if (!turn(&own, &all[k]))
+            all[k].volume = INFINITY;
     }
+    for (int k = 0; k < SEARCH_AXES + 6; k++)
+        if (all[k].volume < INFINITY)
+            keep_best(best, &count, &all[k]);
     return count;
 }
 
@@ -375,7 +384,7 @@ static void polish(const point_set *start, const point_set *all, frame *f)
 static frame smallest_frame(point_set *few, const point_set *all, int threads)
 {
     frame best[KEPT], polished[POLISHED], least = {.volume = INFINITY};
-    size_t count = search(few, best), taken = 0;
+    size_t count = search(few, threads, best), taken = 0;
     for (size_t i = 0; i < count; i++)
         settle(few, &best[i]);
     for (; taken < POLISHED && taken < count; taken++) {

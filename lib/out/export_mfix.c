@@ -51,7 +51,7 @@ static dem_status write_mfix(const dem_clump *clump, const dem_export_options *o
         NULL};
     dem_clump_def def = dem_clump_view(clump);
     dem_ball_union u;
-    DEM_TRY(dem_ball_union_compute(def.balls, def.ball_count, false, &u, error));
+    DEM_TRY(dem_ball_union_compute(def.balls, def.ball_count, false, 1, &u, error));
     double d = 2 * dem_export_reach(&def);
     dem_buffer_text(out, "#version = 1\n");
     dem_export_put_head(out, &(dem_export_head){MARK, "MFiX glued sphere configuration", use, "mfix.csv"}, &def,

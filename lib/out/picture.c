@@ -95,7 +95,7 @@ static dem_status colour_balls(const dem_ball *balls, size_t count, dem_colour *
     // clay, sand, sage, sea, sky, heather
     static const double turns[HUES] = {0.09, 0.20, 0.37, 0.52, 0.68, 0.90};
     dem_ball_union seams;
-    DEM_TRY(dem_ball_union_compute(balls, count, true, &seams, error));
+    DEM_TRY(dem_ball_union_compute(balls, count, true, 1, &seams, error));
     int *hues = dem_alloc(count, sizeof *hues);
     if (hues) {
         for (size_t i = 0; i < count; i++)
