@@ -51,7 +51,7 @@ static void the_closest_point_is_on_the_boundary_and_none_is_closer(void **state
     dem_random r = random_stream(2, 0);
     for (int i = 0; i < 1500; i++) {
         dem_vec3 p = v3_scale(random_direction(&r), 1.6 * cbrt(random_uniform(&r)));
-        dem_boundary_hit hit = dem_boundary_closest(&b, p, -1);
+        dem_boundary_hit hit = dem_boundary_closest(&b, p, -1, INFINITY);
         check_near(v3_distance(p, hit.point), hit.distance, 1e-12);
         int on = 0;
         bool inside = false;
@@ -93,7 +93,7 @@ static void a_search_that_has_enough_stops_within_it(void **state)
     dem_random r = random_stream(4, 0);
     for (int i = 0; i < 3000; i++) {
         dem_vec3 p = v3_scale(random_direction(&r), 1.2 * random_uniform(&r));
-        double exact = dem_boundary_closest(&b, p, -1).distance, got = dem_boundary_closest(&b, p, 0.1).distance;
+        double exact = dem_boundary_closest(&b, p, -1, INFINITY).distance, got = dem_boundary_closest(&b, p, 0.1, INFINITY).distance;
         check(got >= exact);
         check(got <= fmax(exact, 0.1));
     }
@@ -172,9 +172,9 @@ static void a_single_ball_and_a_shell_around_a_void_have_boundaries(void **state
     dem_boundary b;
     dem_error error;
     check_ok(dem_boundary_build(&b, &one, 1, &error), error);
-    check_near(dem_boundary_closest(&b, v3(1, 0.5, 0), -1).distance, 1.5, 1e-15);
-    check_near(dem_boundary_closest(&b, v3(1, 0, 5), -1).distance, 3, 1e-15);
-    check_near(dem_boundary_closest(&b, v3(1, 0, 0), -1).distance, 2, 1e-15);
+    check_near(dem_boundary_closest(&b, v3(1, 0.5, 0), -1, INFINITY).distance, 1.5, 1e-15);
+    check_near(dem_boundary_closest(&b, v3(1, 0, 5), -1, INFINITY).distance, 3, 1e-15);
+    check_near(dem_boundary_closest(&b, v3(1, 0, 0), -1, INFINITY).distance, 2, 1e-15);
     dem_boundary_release(&b);
     // balls on a sphere leave a void in the middle that has a boundary of its own
     dem_ball shell[400];
@@ -183,7 +183,7 @@ static void a_single_ball_and_a_shell_around_a_void_have_boundaries(void **state
         shell[i] = (dem_ball){{s * cos(t), s * sin(t), z}, 0.2};
     }
     check_ok(dem_boundary_build(&b, shell, 400, &error), error);
-    dem_boundary_hit hit = dem_boundary_closest(&b, v3(0, 0, 0), -1);
+    dem_boundary_hit hit = dem_boundary_closest(&b, v3(0, 0, 0), -1, INFINITY);
     check_near(hit.distance, 0.8, 1e-12);
     check(v3_dot(hit.normal, hit.point) < 0);
     dem_boundary_release(&b);

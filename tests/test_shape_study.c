@@ -86,7 +86,8 @@ static void more_spheres_pay_until_they_cannot_be_told_from_the_finest(void **st
     // the first is off by far more than its error, the second by less
     const double off[3][3] = {{0.80, 0.81, 0.79}, {0.60, 0.62, 0.61}, {0.615, 0.595, 0.605}},
                  alike[3][3] = {{0.60, 0.61, 0.62}, {0.60, 0.62, 0.61}, {0.615, 0.595, 0.605}},
-                 late[3][3] = {{0.60, 0.61, 0.62}, {0.70, 0.71, 0.72}, {0.615, 0.595, 0.605}};
+                 late[3][3] = {{0.60, 0.61, 0.62}, {0.70, 0.71, 0.72}, {0.615, 0.595, 0.605}},
+                 wide[3][3] = {{0.60, 0.61, 0.62}, {0.30, 0.90, 0.62}, {0.615, 0.595, 0.605}};
     dem_cell_result results[9] = {{0}};
     fill(results, off);
     assert_int_equal(dem_shape_enough(&s, results, 0, "void_ratio"), 1);
@@ -99,6 +100,10 @@ static void more_spheres_pay_until_they_cannot_be_told_from_the_finest(void **st
     fill(results, late);
     assert_int_equal(dem_shape_enough(&s, results, 0, "void_ratio"), 2);
     assert_int_equal(dem_shape_enough(&s, results, 0, "no figure"), 3);
+    dem_cells_release(results, 9);
+    // bars as wide as the figure agree with everything
+    fill(results, wide);
+    assert_int_equal(dem_shape_enough(&s, results, 0, "void_ratio"), 3);
     dem_cells_release(results, 9);
 }
 

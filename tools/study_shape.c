@@ -11,7 +11,7 @@ typedef struct arguments {
     cli_common common;
     const char *folder, *spheres, *tests;
     long only, seeds, bodies;
-    int family, contacts, effort;
+    int family, contacts, effort, repair;
     bool count_cells;
     cli_texts values;
     shape_request request;
@@ -19,6 +19,7 @@ typedef struct arguments {
 
 static const char family_choices[] = "none|aspect|roundness|angularity|clusters";
 static const char contacts_choices[] = "sum|mean|merge|soft", effort_choices[] = "fast|default|best";
+static const char repair_choices[] = "auto|strict|wrap|none";
 
 static int read_tests(const cli_tool *tool, const arguments *a, dem_shape_study *s)
 {
@@ -67,6 +68,7 @@ static int read_request(const cli_tool *tool, arguments *a, const cli_texts *wor
     q->series = (shape_series)a->family;
     q->mesh = words->count ? words->items[0] : NULL;
     q->effort = a->effort;
+    q->repair = a->repair;
     q->seed = (uint64_t)a->common.seed;
     q->folder = a->folder;
     return 0;
@@ -185,6 +187,7 @@ int study_shape(int argc, char **argv)
          "numbers of spheres (default 1,2,5,10,20,50,100,500); of a family the last one", &a.spheres, 0, 0},
         {"family", 0, CLI_CHOICE, family_choices, "make a family of grains instead of reading one", &a.family, 0, 0},
         {"effort", 0, CLI_CHOICE, effort_choices, "of the packing (default default)", &a.effort, 0, 0},
+        {"repair", 0, CLI_CHOICE, repair_choices, "what to do with a faulty mesh (default auto)", &a.repair, 0, 0},
         {.help = "Tests"},
         {"tests", 0, CLI_TEXT, "LIST", "which (default pour,heap,shear-box,triaxial,drum)", &a.tests, 0, 0},
         {"seeds", 0, CLI_WHOLE, "N", "repetitions of each (default 4)", &a.seeds, 1, 1000},

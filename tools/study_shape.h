@@ -28,7 +28,7 @@ typedef struct shape_request {
     const char *mesh;           ///< of SHAPE_GRAIN
     double counts[SHAPE_MOST];  ///< of spheres, ascending; of families the last one counts
     size_t count_count;
-    int effort;
+    int effort, repair;
     uint64_t seed;
     const char *folder;  ///< clumps are kept in `clumps` of it, and taken from there
 } shape_request;

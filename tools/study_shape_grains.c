@@ -76,10 +76,13 @@ static dem_status make_counts(const dem_ctx *ctx, const shape_request *q, shape_
     dem_mesh mesh = {0};
     dem_mesh_report report;
     char digest[DIGEST];
-    const dem_repair_options repair = {.repair = DEM_REPAIR_AUTO};
+    const dem_repair_options repair = {.repair = (dem_repair)q->repair};
     const char *name = dem_file_name(q->mesh), *end = strrchr(name, '.');
     char stem[64];
-    snprintf(stem, sizeof stem, "%.*s", (int)(end && end > name ? end - name : (long)strlen(name)), name);
+    // another repair makes another grain, whose clumps are kept beside those of the first
+    static const char *const repaired[] = {"", "-strict", "-wrap", "-none"};
+    snprintf(stem, sizeof stem, "%.*s%s", end && end > name ? (int)(end - name < 40 ? end - name : 40) : 40, name,
+             repaired[q->repair]);
     DEM_TRY(dem_mesh_import(ctx, q->mesh, &mesh, error));
     dem_status status = dem_sha256_file(q->mesh, digest, error);
     if (status == DEM_OK)

@@ -7,6 +7,31 @@
 
 enum { CHUNK = 64 };
 
+// neighbours in a list are near each other: the distance of one bounds that of the next
+static double next_limit(double distance, dem_vec3 at, dem_vec3 next)
+{
+    return 1.000001 * (distance + v3_distance(at, next));
+}
+
+static void mesh_hits(const dem_boundary *boundary, const dem_surface_point *points, size_t count, int threads,
+                      double *distance, double *angle)
+{
+    size_t chunks = (count + CHUNK - 1) / CHUNK;
+#pragma omp parallel for num_threads(threads) schedule(dynamic)
+    for (size_t k = 0; k < chunks; k++) {
+        size_t end = (k + 1) * CHUNK < count ? (k + 1) * CHUNK : count;
+        double limit = INFINITY;
+        for (size_t i = k * CHUNK; i < end; i++) {
+            dem_boundary_hit hit = dem_boundary_closest(boundary, points[i].point, -1, limit);
+            dem_vec3 n = points[i].normal;
+            distance[i] = hit.distance;
+            angle[i] = atan2(v3_norm(v3_cross(hit.normal, n)), v3_dot(hit.normal, n));
+            if (i + 1 < end)
+                limit = next_limit(hit.distance, points[i].point, points[i + 1].point);
+        }
+    }
+}
+
 static bool mesh_side(const dem_tree *mesh, const dem_boundary *boundary, size_t count, int threads, dem_deviation *out)
 {
     dem_surface_point *points = dem_alloc(count, sizeof *points);
@@ -14,13 +39,7 @@ static bool mesh_side(const dem_tree *mesh, const dem_boundary *boundary, size_t
     bool done = points && distance && angle;
     if (done) {
         double area = dem_tree_spread(mesh, points, &count), sum = 0;
-#pragma omp parallel for num_threads(threads) schedule(dynamic, CHUNK)
-        for (size_t i = 0; i < count; i++) {
-            dem_boundary_hit hit = dem_boundary_closest(boundary, points[i].point, -1);
-            dem_vec3 n = points[i].normal;
-            distance[i] = hit.distance;
-            angle[i] = atan2(v3_norm(v3_cross(hit.normal, n)), v3_dot(hit.normal, n));
-        }
+        mesh_hits(boundary, points, count, threads, distance, angle);
         for (size_t i = 0; i < count; i++) {
             out->mesh_mean += distance[i] / (double)count;
             sum += angle[i] / (double)count;
@@ -37,7 +56,6 @@ static bool mesh_side(const dem_tree *mesh, const dem_boundary *boundary, size_t
 static void boundary_hits(const dem_tree *mesh, const dem_boundary_point *points, size_t count, int threads,
                           dem_boundary_sample_hit *hits)
 {
-    // neighbours in the list are near each other: the last distance bounds the next
     size_t chunks = (count + CHUNK - 1) / CHUNK;
 #pragma omp parallel for num_threads(threads) schedule(dynamic)
     for (size_t k = 0; k < chunks; k++) {
@@ -46,7 +64,7 @@ static void boundary_hits(const dem_tree *mesh, const dem_boundary_point *points
         for (size_t i = k * CHUNK; i < end; i++) {
             hits[i].level = dem_mesh_level(mesh, points[i].point, limit, &hits[i].closest);
             if (i + 1 < end)
-                limit = 1.000001 * (fabs(hits[i].level) + v3_distance(points[i].point, points[i + 1].point));
+                limit = next_limit(fabs(hits[i].level), points[i].point, points[i + 1].point);
         }
     }
 }

@@ -18,7 +18,8 @@ typedef enum cell_kind { TRIANGLE, PIECE, PATCH } cell_kind;
 typedef struct cell {
     dem_vec3 corner[3];
     dem_vec3 middle;
-    dem_vec3 other;  // closest point of the other surface
+    dem_vec3 other;  // closest point of the other surface; at first of the piece it was cut out of
+    bool bounded;    // `other` is set
     double reach;    // no point of the piece is farther from the middle
     double bound;    // of the distance in the piece
     double found;    // distance of the middle; -INFINITY: not on the surface, or not worth finding
@@ -63,6 +64,12 @@ static double corner_farthest(const dem_vec3 corner[3], dem_vec3 q)
         fmax(v3_norm2(v3_sub(corner[0], q)), fmax(v3_norm2(v3_sub(corner[1], q)), v3_norm2(v3_sub(corner[2], q)))));
 }
 
+// the other surface is not farther than this from p
+static double known_limit(const cell *c, dem_vec3 p)
+{
+    return c->bounded ? 1.000001 * v3_distance(p, c->other) : INFINITY;
+}
+
 // --- from the mesh to the boundary
 
 // how far p is from the triangle
@@ -76,7 +83,7 @@ static double off_triangle(const search *s, uint32_t triangle, dem_vec3 p)
 static void mesh_evaluate(const search *s, cell *c)
 {
     double enough = threshold(s) - c->reach;
-    dem_boundary_hit hit = dem_boundary_closest(s->boundary, c->middle, enough);
+    dem_boundary_hit hit = dem_boundary_closest(s->boundary, c->middle, enough, known_limit(c, c->middle));
     c->found = c->bound = -INFINITY;
     if (hit.distance <= enough)
         return;
@@ -97,6 +104,8 @@ static cell triangle_cell(cell_kind kind, uint32_t index, dem_vec3 a, dem_vec3 b
 static void piece_add(search *s, const cell *parent, dem_vec3 a, dem_vec3 b, dem_vec3 c)
 {
     cell piece = triangle_cell(PIECE, parent->index, a, b, c);
+    piece.other = parent->other;
+    piece.bounded = true;
     piece.bound = corner_farthest(piece.corner, parent->other);
     if (piece.bound > threshold(s) && off_triangle(s, piece.index, piece.middle) <= piece.reach + 1e-9)
         cell_add(s, piece);
@@ -149,7 +158,7 @@ static void patch_evaluate(const search *s, cell *c)
     c->found = c->bound = -INFINITY;
     if (enough > 0 && dem_tree_within(s->mesh, p, enough))
         return;
-    double level = s->sign * dem_mesh_level(s->mesh, p, INFINITY, &c->other);
+    double level = s->sign * dem_mesh_level(s->mesh, p, known_limit(c, p), &c->other);
     c->bound = level + c->reach;
     if (level >= 0)
         c->bound = fmin(c->bound, patch_farthest(s, c, c->other));
@@ -159,7 +168,8 @@ static void patch_evaluate(const search *s, cell *c)
 
 static void patch_add(search *s, const cell *parent, dem_vec3 a, dem_vec3 b, dem_vec3 c)
 {
-    cell out = {.corner = {a, b, c}, .middle = v3_unit(v3_add(v3_add(a, b), c)), .index = parent->index, .kind = PATCH};
+    cell out = {.corner = {a, b, c}, .middle = v3_unit(v3_add(v3_add(a, b), c)), .other = parent->other,
+                .bounded = true, .index = parent->index, .kind = PATCH};
     double reach = corner_farthest(out.corner, out.middle);
     out.reach = reach * s->boundary->balls[out.index].radius;
     out.bound = patch_farthest(s, &out, parent->other);
@@ -252,7 +262,8 @@ bool dem_farthest_of_boundary(const dem_tree *mesh, const dem_boundary *boundary
     for (size_t i = 0; i < count; i++) {
         dem_ball ball = boundary->balls[points[i].ball];
         double wide = SPREAD * sqrt(points[i].area), level = sign * hits[i].level;
-        cell c = {.middle = points[i].normal, .other = hits[i].closest, .index = points[i].ball, .kind = PATCH};
+        cell c = {.middle = points[i].normal, .other = hits[i].closest, .bounded = true, .index = points[i].ball,
+                  .kind = PATCH};
         if (level + wide <= threshold(&s))
             continue;
         dem_vec3 a = v3_normal_to(c.middle), b = v3_cross(c.middle, a);
@@ -288,7 +299,7 @@ static bool vertex_distances(const search *s, double low, double *distance, size
             used[count++] = (uint32_t)v;
 #pragma omp parallel for num_threads(s->threads) schedule(dynamic, CHUNK)
     for (size_t k = 0; k < count; k++)
-        distance[used[k]] = dem_boundary_closest(s->boundary, mesh->vertices[used[k]], low).distance;
+        distance[used[k]] = dem_boundary_closest(s->boundary, mesh->vertices[used[k]], low, INFINITY).distance;
     free(used);
     return true;
 }

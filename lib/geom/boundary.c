@@ -192,19 +192,21 @@ static void crease_closest(const dem_boundary *b, dem_vec3 p, double enough, dem
     }
 }
 
-dem_boundary_hit dem_boundary_closest(const dem_boundary *b, dem_vec3 p, double enough)
+dem_boundary_hit dem_boundary_closest(const dem_boundary *b, dem_vec3 p, double enough, double limit)
 {
-    uint32_t nearest = 0;
-    dem_boundary_hit hit = {.distance = dem_ball_tree_level(&b->tree, p, INFINITY, 0, &nearest)};
-    if (hit.distance >= 0) {
+    uint32_t nearest = UINT32_MAX;
+    dem_boundary_hit hit = {.distance = dem_ball_tree_level(&b->tree, p, limit, 0, &nearest)};
+    bool found = nearest != UINT32_MAX;
+    if (found && hit.distance >= 0) {
         hit.normal = v3_unit(v3_sub(p, b->balls[nearest].centre));
         hit.point = v3_along(b->balls[nearest].centre, b->balls[nearest].radius, hit.normal);
-    } else {
-        hit.distance = INFINITY;
+    } else if (found) {
+        hit.distance = limit;
         crease_closest(b, p, enough, &hit);
         patch_closest(b, p, enough, &hit);
+        found = hit.distance < limit;
     }
-    return hit;
+    return found || limit == INFINITY ? hit : dem_boundary_closest(b, p, enough, INFINITY);
 }
 
 typedef struct point_list {

@@ -34,8 +34,8 @@ typedef struct dem_boundary_hit {
 } dem_boundary_hit;
 
 /// The boundary point closest to p. Exact, among patches, creases and their ends, unless one within `enough` was met
-/// on the way, which ends the search.
-dem_boundary_hit dem_boundary_closest(const dem_boundary *boundary, dem_vec3 p, double enough);
+/// on the way, which ends the search. One nearer than `limit` is looked for first (INFINITY: nothing is known).
+dem_boundary_hit dem_boundary_closest(const dem_boundary *boundary, dem_vec3 p, double enough, double limit);
 
 /// True where the direction n of ball i's unit sphere is covered by another ball, and with it all directions whose
 /// unit vectors lie within `margin` of n. Only for balls with a patch.

@@ -1,8 +1,7 @@
 // Shapes: a clump file, a sphere, or spheres written into the scene.
 #include <string.h>
 
-#include "math/mat3.h"
-#include "math/quat.h"
+#include "clump/union.h"
 #include "sim/scene_reader.h"
 
 // what is given of spheres that stand in the scene itself
@@ -146,15 +145,6 @@ static dem_status read_inertia(dem_scene_reader *r, const dem_scene_value *v, co
     return DEM_OK;
 }
 
-// moves the balls into the principal frame of their union
-static void turn_balls(shape_text *text, const dem_solid *solid)
-{
-    for (size_t i = 0; i < text->count; i++) {
-        dem_vec3 *c = &text->balls[i].centre;
-        *c = quat_unrotate(solid->axes, v3_sub(*c, solid->centre));
-    }
-}
-
 static bool agree(double a, double b, double scale)
 {
     return fabs(a - b) <= 1e-9 * scale;
@@ -171,56 +161,33 @@ static dem_mass_source source_of(const dem_clump_def *def)
 }
 
 // the material's density tells what volume the mass stands for; without one it is that of the union
-static dem_status create_clump(dem_scene_reader *r, const dem_scene_value *v, shape_text *text, double density)
+static dem_status clump_of_mass(const shape_text *text, double density, dem_clump **clump, dem_error *error)
 {
     dem_union now;
-    dem_error inner;
-    dem_clump *clump;
-    if (dem_balls_union(text->balls, text->count, &now, &inner) != DEM_OK)
-        return dem_scene_pass_on(r, v, &inner);
-    dem_clump_def def = {.name = text->shape->name,
-                         .density = isnan(density) ? text->mass / now.solid.volume : density,
-                         .mass = text->mass,
-                         .orientation = {1, 0, 0, 0},
-                         .union_volume = now.solid.volume,
-                         .union_centre = now.solid.centre,
-                         .balls = text->balls,
-                         .ball_count = text->count,
-                         .seconds = NAN};
+    DEM_TRY(dem_balls_union(text->balls, text->count, &now, error));
+    if (isnan(density))
+        density = text->mass / now.solid.volume;
+    dem_clump_def def = dem_clump_def_of_balls(text->shape->name, text->balls, text->count, &now, density);
+    def.mass = text->mass;
     def.volume = def.mass / def.density;
-    double *unknown[] = {&def.fidelity.iou_gap, &def.shape.equivalent_diameter};
-    size_t figures[] = {offsetof(dem_fidelity, pieces) / sizeof(double), sizeof(dem_shape) / sizeof(double)};
-    for (int k = 0; k < 2; k++)
-        for (size_t i = 0; i < figures[k]; i++)
-            unknown[k][i] = NAN;
-    def.fidelity.pieces = now.pieces;
-    for (int i = 0; i < 3; i++) {
+    for (int i = 0; i < 3; i++)
         def.inertia[i] = text->inertia[i];
-        def.union_inertia[i] = now.solid.principal[i] * def.density;
-    }
     def.mass_from = source_of(&def);
-    if (dem_clump_create(&def, &clump, &inner) != DEM_OK)
-        return dem_scene_pass_on(r, v, &inner);
-    return keep_clump(r, text->shape, clump);
+    return dem_clump_create(&def, clump, error);
 }
 
 static dem_status make_clump(dem_scene_reader *r, const dem_scene_value *v, shape_text *text, bool mass_given)
 {
     const dem_material *material = &r->scene->materials[text->shape->material];
-    if (!mass_given) {
-        dem_union u;
-        dem_error inner;
-        if (isnan(material->density))
-            return dem_scene_refuse(r, v, "give \"mass\" and \"inertia\", or the material's density",
-                                    "needs \"density\" of \"%.60s\"", material->name);
-        if (dem_balls_union(text->balls, text->count, &u, &inner) != DEM_OK)
-            return dem_scene_pass_on(r, v, &inner);
-        turn_balls(text, &u.solid);
-        text->mass = material->density * u.solid.volume;
-        for (int i = 0; i < 3; i++)
-            text->inertia[i] = material->density * u.solid.principal[i];
-    }
-    return create_clump(r, v, text, material->density);
+    dem_clump *clump;
+    dem_error inner;
+    if (!mass_given && isnan(material->density))
+        return dem_scene_refuse(r, v, "give \"mass\" and \"inertia\", or the material's density",
+                                "needs \"density\" of \"%.60s\"", material->name);
+    dem_status status = mass_given ? clump_of_mass(text, material->density, &clump, &inner)
+                                   : dem_clump_of_union(text->shape->name, text->balls, text->count, material->density,
+                                                        &clump, &inner);
+    return status == DEM_OK ? keep_clump(r, text->shape, clump) : dem_scene_pass_on(r, v, &inner);
 }
 
 // ---- shapes

@@ -77,6 +77,9 @@ dem_mean dem_shape_mean(const dem_shape_study *s, const dem_cell_result *results
     return dem_mean_of(values, count);
 }
 
+// Figures whose bars are wider than this part of them agree with anything: that says nothing.
+static const double telling = 0.25;
+
 size_t dem_shape_enough(const dem_shape_study *s, const dem_cell_result *results, size_t test, const char *name)
 {
     size_t last = s->variant_count - 1, enough = last;
@@ -87,8 +90,11 @@ size_t dem_shape_enough(const dem_shape_study *s, const dem_cell_result *results
         dem_mean m = dem_shape_mean(s, results, i, test, name);
         if (m.count < 2)
             return s->variant_count;
-        if (!(fabs(m.mean - finest.mean) <= hypot(m.error, finest.error)))
+        double bar = hypot(m.error, finest.error);
+        if (!(fabs(m.mean - finest.mean) <= bar))
             break;
+        if (bar > telling * fabs(finest.mean))
+            return s->variant_count;
         enough = i;
     }
     return enough;

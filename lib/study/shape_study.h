@@ -44,7 +44,8 @@ dem_mean dem_shape_mean(const dem_shape_study *study, const dem_cell_result *res
                         const char *name);
 
 /// The first variant from which on the figure cannot be told from that of the last one: the difference of each is at
-/// most what the errors of both make, and the means differ by less than that. variant_count: not known.
+/// most what the errors of both make, and the means differ by less than that. variant_count: not known, for
+/// want of seeds or because the errors are so large that they agree with anything.
 size_t dem_shape_enough(const dem_shape_study *study, const dem_cell_result *results, size_t test, const char *name);
 
 #endif
