@@ -10,6 +10,7 @@
 #include "base/status.h"
 #include "sim/bodies.h"
 #include "sim/population.h"
+#include "sim/slim.h"
 
 enum { LEVELS = 24, CELLS_LEAST = 4, SLACK = 16 };
 
@@ -37,6 +38,7 @@ struct dem_search {
     float *x, *y, *z, *r;  // sorted by level and cell
     uint32_t *id, *cell, *found;
     uint8_t *level_of;
+    bool slim;  // some shapes are
     int32_t *moved;
     near_pair *near, *sorted;
     size_t near_count, near_capacity, sorted_capacity;
@@ -136,6 +138,8 @@ dem_status dem_search_create(dem_world *w, dem_error *error)
         return dem_fail_memory(error);
     size_t n = w->bodies.count, room = n + 2 * DEM_WIDTH_FLOAT + 32;
     s->w = w;
+    for (size_t i = 0; i < w->templates.count; i++)
+        s->slim |= w->templates.items[i].slim;
     s->x = dem_alloc_zero(room, sizeof *s->x);
     s->y = dem_alloc_zero(room, sizeof *s->y);
     s->z = dem_alloc_zero(room, sizeof *s->z);
@@ -287,10 +291,24 @@ static bool make_room(void *array, size_t *capacity, size_t count, size_t size)
     return *p != NULL;
 }
 
+static bool boxes_apart(const search *s, uint32_t a, uint32_t b, uint32_t image)
+{
+    const dem_world *w = s->w;
+    const dem_template *items = w->templates.items;
+    if (!items[w->bodies.shape[a]].slim && !items[w->bodies.shape[b]].slim)
+        return false;
+    dem_vec3 offset = v3_sub(body_position(&w->bodies, b), body_position(&w->bodies, a));
+    if (w->periodic)
+        offset = v3_add(offset, v3(w->shifts[4 * image], w->shifts[4 * image + 1], w->shifts[4 * image + 2]));
+    return dem_slim_apart(w, a, b, offset, w->skin + w->ahead);
+}
+
 static bool add_near(search *s, uint32_t a, uint32_t b, uint32_t image)
 {
     if (hold_whole(body_hold(&s->w->bodies, a)) && hold_whole(body_hold(&s->w->bodies, b)))
         return true;  // contacts can do nothing to either
+    if (s->slim && boxes_apart(s, a, b, image))
+        return true;
     if (!dem_grow(&s->near, &s->near_capacity, s->near_count, sizeof *s->near))
         return false;
     s->near[s->near_count++] = (near_pair){a, b, image};
