@@ -32,34 +32,32 @@ static void *grown_column(const void *old, const dem_contacts *from, const dem_s
     return p;
 }
 
-// moves every segment to its place in larger columns
+// Moves every segment to its place in larger columns, one column after the other: all twice would be most of the memory
+// of a run. Without memory no contacts are left.
 static bool move_columns(const dem_features *f, dem_contacts *contacts, const dem_segment *to, size_t segments,
                          size_t capacity, int form)
 {
     bool walls = form >= 0, mesh = form == DEM_FORM_MESH, good = true;
-    dem_contact_columns columns = {0};
 #define COLUMN(type, name, unit, when, about)                                                                          \
-    if (when) {                                                                                                        \
-        columns.name = grown_column(contacts->columns.name, contacts, to, segments, capacity, sizeof(type));           \
-        good = good && columns.name;                                                                                   \
+    if ((when) && good) {                                                                                              \
+        type *grown = grown_column(contacts->columns.name, contacts, to, segments, capacity, sizeof(type));            \
+        good = grown;                                                                                                  \
+        if (good) {                                                                                                    \
+            free(contacts->columns.name);                                                                              \
+            contacts->columns.name = grown;                                                                            \
+        }                                                                                                              \
     }
     DEM_CONTACT_COLUMNS(COLUMN)
 #undef COLUMN
-    dem_contact_columns *unused = good ? &contacts->columns : &columns;
-#define COLUMN(type, name, unit, when, about) free(unused->name);
-    DEM_CONTACT_COLUMNS(COLUMN)
-#undef COLUMN
-    if (!good)
-        return false;
-    contacts->columns = columns;
-    contacts->capacity = capacity;
+    contacts->capacity = good ? capacity : 0;
     for (size_t i = 0; i < segments; i++) {
         dem_segment *s = &contacts->segments[i];
-        s->end = to[i].begin + (s->end - s->begin);
-        s->begin = to[i].begin;
-        s->capacity = to[i].capacity;
+        size_t count = good ? s->end - s->begin : 0;
+        s->begin = good ? to[i].begin : 0;
+        s->end = s->begin + count;
+        s->capacity = good ? to[i].capacity : 0;
     }
-    return true;
+    return good;
 }
 
 dem_status dem_contacts_create(dem_world *w, dem_contacts *contacts, int form, dem_error *error)
