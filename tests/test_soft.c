@@ -25,12 +25,29 @@ static void damp(dem_pair_law *law, double restitution, double friction)
 
 // ---- one sphere
 
-static void run_spheres(dem_multiple multiple, dem_normal_law normal, dem_vec3 out[8], double *error)
+// moments against turning, by `which`: none, and each of the laws
+enum { TURNINGS = 6 };
+static void resist(dem_pair_law *law, int which)
+{
+    static const dem_rolling_law rolling[TURNINGS] = {DEM_ROLLING_NONE, DEM_ROLLING_EPSD, DEM_ROLLING_CONSTANT,
+                                                      DEM_ROLLING_BOUNDED, DEM_ROLLING_NONE, DEM_ROLLING_EPSD};
+    static const dem_twisting_law twisting[TURNINGS] = {DEM_TWISTING_NONE, DEM_TWISTING_NONE, DEM_TWISTING_CONSTANT,
+                                                        DEM_TWISTING_NONE, DEM_TWISTING_MARSHALL,
+                                                        DEM_TWISTING_MARSHALL};
+    law->rolling = rolling[which];
+    law->rolling_coefficient = 0.1;
+    law->rolling_damping = 0.3;
+    law->twisting = twisting[which];
+    law->twisting_coefficient = 0.05;
+}
+
+static void run_spheres(dem_multiple multiple, dem_normal_law normal, int turning, dem_vec3 out[8], double *error)
 {
     model *m = soft_model();
     m->scene.multiple = multiple;
     damp(&m->laws[0], 0.5, 0.5);
     m->laws[0].normal = normal;
+    resist(&m->laws[0], turning);
     if (normal == DEM_NORMAL_HERTZ) {
         m->laws[0].friction = DEM_FRICTION_MINDLIN;
         m->materials[0].young = 1e7;
@@ -45,7 +62,8 @@ static void run_spheres(dem_multiple multiple, dem_normal_law normal, dem_vec3 o
     model_body(m, shape, v3(0.15, 0.1, 1.5))->velocity = v3(0, 0, -0.8);
     model_plane(m, v3(0, 0, 0), v3(0, 0, 1));
     dem_world *w = model_world(m, 1);
-    run_steps(w, 5000);
+    // constant moments tremble at rest, by the last bit
+    run_steps(w, turning == 2 ? 1200 : 5000);
     *error = measured(w)->energy.error;
     dem_body_view v = dem_world_bodies(w);
     for (int i = 0; i < 2; i++) {
@@ -62,14 +80,17 @@ static void run_spheres(dem_multiple multiple, dem_normal_law normal, dem_vec3 o
 static void single_spheres_are_as_with_the_sum(void **state)
 {
     (void)state;
-    for (dem_normal_law normal = DEM_NORMAL_LINEAR; normal <= DEM_NORMAL_HERTZ; normal++) {
+    for (int k = 0; k < 2 * TURNINGS; k++) {
+        dem_normal_law normal = k % 2 ? DEM_NORMAL_HERTZ : DEM_NORMAL_LINEAR;
         dem_vec3 soft[8], sum[8];
         double error_soft, error_sum;
-        run_spheres(DEM_MULTIPLE_SOFT, normal, soft, &error_soft);
-        run_spheres(DEM_MULTIPLE_SUM, normal, sum, &error_sum);
+        // patches remember the stiffness of a step ago, where single contacts reckon it from the overlap's speed
+        bool marshall = k / 2 >= 4;
+        run_spheres(DEM_MULTIPLE_SOFT, normal, k / 2, soft, &error_soft);
+        run_spheres(DEM_MULTIPLE_SUM, normal, k / 2, sum, &error_sum);
         for (int i = 0; i < 8; i++)
-            check_vec(soft[i], sum[i], i % 4 == 3 ? 1e-6 : 1e-9);
-        check_near(error_soft, error_sum, 1e-9);
+            check_vec(soft[i], sum[i], i % 4 == 3 ? (marshall ? 0.1 : 1e-6) : marshall ? 2e-4 : 1e-9);
+        check_near(error_soft, error_sum, marshall ? 1e-4 : 1e-9);
         check(fabs(error_sum) < 1e-2 && v3_norm(sum[3]) > 1);
     }
 }

@@ -32,34 +32,32 @@ static void *grown_column(const void *old, const dem_contacts *from, const dem_s
     return p;
 }
 
-// moves every segment to its place in larger columns
+// Moves every segment to its place in larger columns, one column after the other: all twice would be most of the memory
+// of a run. Without memory no contacts are left.
 static bool move_columns(const dem_features *f, dem_contacts *contacts, const dem_segment *to, size_t segments,
                          size_t capacity, int form)
 {
     bool walls = form >= 0, mesh = form == DEM_FORM_MESH, good = true;
-    dem_contact_columns columns = {0};
 #define COLUMN(type, name, unit, when, about)                                                                          \
-    if (when) {                                                                                                        \
-        columns.name = grown_column(contacts->columns.name, contacts, to, segments, capacity, sizeof(type));           \
-        good = good && columns.name;                                                                                   \
+    if ((when) && good) {                                                                                              \
+        type *grown = grown_column(contacts->columns.name, contacts, to, segments, capacity, sizeof(type));            \
+        good = grown;                                                                                                  \
+        if (good) {                                                                                                    \
+            free(contacts->columns.name);                                                                              \
+            contacts->columns.name = grown;                                                                            \
+        }                                                                                                              \
     }
     DEM_CONTACT_COLUMNS(COLUMN)
 #undef COLUMN
-    dem_contact_columns *unused = good ? &contacts->columns : &columns;
-#define COLUMN(type, name, unit, when, about) free(unused->name);
-    DEM_CONTACT_COLUMNS(COLUMN)
-#undef COLUMN
-    if (!good)
-        return false;
-    contacts->columns = columns;
-    contacts->capacity = capacity;
+    contacts->capacity = good ? capacity : 0;
     for (size_t i = 0; i < segments; i++) {
         dem_segment *s = &contacts->segments[i];
-        s->end = to[i].begin + (s->end - s->begin);
-        s->begin = to[i].begin;
-        s->capacity = to[i].capacity;
+        size_t count = good ? s->end - s->begin : 0;
+        s->begin = good ? to[i].begin : 0;
+        s->end = s->begin + count;
+        s->capacity = good ? to[i].capacity : 0;
     }
-    return true;
+    return good;
 }
 
 dem_status dem_contacts_create(dem_world *w, dem_contacts *contacts, int form, dem_error *error)
@@ -274,11 +272,22 @@ static void take_history(const dem_world *w, const dem_segment *s, const dem_pai
     item->old = (uint32_t)(at - s->begin) + 1;
 }
 
-// what the first one of the pair remembers stands for all
-static void take_soft_history(const dem_segment *s, const dem_pair *p, entry *item)
+static bool same_parts(const dem_soft *soft, uint32_t a, uint32_t b, uint32_t other_a, uint32_t other_b)
 {
-    if (p->count)
-        item->old = (uint32_t)(segment_place(s, p->start) - s->begin) + 1;
+    return soft_part(soft, a) == soft_part(soft, other_a) && soft_part(soft, b) == soft_part(soft, other_b);
+}
+
+// what the first one of a pair of parts remembers stands for all
+static void take_soft_history(const dem_world *w, const dem_segment *s, const dem_pair *p, entry *item)
+{
+    const dem_contact_columns *c = &w->contacts.columns;
+    for (size_t k = 0; k < p->count; k++) {
+        size_t at = segment_place(s, p->start + k);
+        if (same_parts(&w->soft, item->sphere_a, item->sphere_b, c->sphere_a[at], c->sphere_b[at])) {
+            item->old = (uint32_t)(at - s->begin) + 1;
+            return;
+        }
+    }
 }
 
 static bool make_room(list *l, size_t more)
@@ -332,8 +341,9 @@ static bool list_pair(const dem_world *w, const dem_segment *s, dem_pair *p, con
                           .law = w->laws.table[a->material * w->laws.material_count + b->material]};
             if (!w->features.soft)
                 take_history(w, s, p, &item, &old);
-            else if (i == 0)
-                take_soft_history(s, p, &item);
+            else if (i == 0 || !same_parts(&w->soft, item.sphere_a, item.sphere_b, l->items[l->count - 1].sphere_a,
+                                           l->items[l->count - 1].sphere_b))
+                take_soft_history(w, s, p, &item);
             l->items[l->count++] = item;
         }
     }

@@ -130,6 +130,30 @@ static bool same_candidates(const dem_world *w, const dem_pair *p, const dem_fre
     return true;
 }
 
+// soft contacts of the same parts follow each other, in the order they have
+static bool sort_by_parts(const dem_world *w, const dem_pair *p, dem_candidates *c, const dem_fresh *fresh)
+{
+    uint32_t shape_a = w->bodies.shape[p->a], shape_b = w->bodies.shape[p->b];
+    size_t count = fresh->count, begin[DEM_SOFT_PARTS * DEM_SOFT_PARTS + 1] = {0};
+    if (count < 2 || w->soft.parts[shape_a] * w->soft.parts[shape_b] == 1)
+        return true;
+    if (!reserve(c, count))
+        return false;
+    const uint8_t *a = w->soft.part + w->templates.items[shape_a].first;
+    const uint8_t *b = w->soft.part + w->templates.items[shape_b].first;
+    uint32_t *pairs = c->pairs + 2 * fresh->begin, *was = c->pairs + 2 * c->count;
+    memcpy(was, pairs, 2 * count * sizeof *was);
+    for (size_t i = 0; i < count; i++)
+        begin[DEM_SOFT_PARTS * a[was[2 * i]] + b[was[2 * i + 1]] + 1]++;
+    for (size_t k = 1; k < DEM_SOFT_PARTS * DEM_SOFT_PARTS; k++)
+        begin[k] += begin[k - 1];
+    for (size_t i = 0; i < count; i++) {
+        size_t to = begin[DEM_SOFT_PARTS * a[was[2 * i]] + b[was[2 * i + 1]]]++;
+        memcpy(pairs + 2 * to, was + 2 * i, 2 * sizeof *was);
+    }
+    return true;
+}
+
 static bool look_at_pair(dem_world *w, dem_fresh *fresh)
 {
     const dem_pair *p = &w->pairs.items[fresh->pair];
@@ -162,6 +186,8 @@ static bool look_at_pair(dem_world *w, dem_fresh *fresh)
         c->count = fresh->begin + fresh->count;
     }
     fresh->slack -= w->ahead;
+    if (w->soft.part && !sort_by_parts(w, p, c, fresh))
+        return false;
     fresh->changed = !same_candidates(w, p, fresh);
     if (!fresh->changed)
         c->count = fresh->begin;
