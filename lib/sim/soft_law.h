@@ -58,11 +58,8 @@ typedef struct soft_result {
 enum { SOFT_LAW = LAW_MORE + 16 };  // numbers of a law, of which the last are those of moments
 
 typedef struct soft_spot {
-<<<<<<< HEAD
-    wide law[LAW_MORE];
-    law_step step;
-=======
     wide law[SOFT_LAW];
+    law_step step;
     wide reduced, area;  // R* [m]; R_min^2 / (R_a + R_b) [m]
     wide radius_a, radius_b;  // [m]
     double tau, last_step, next_step;
