@@ -221,7 +221,7 @@ static bool list_strips(const dem_lines *lines, const dem_ball_columns *balls, d
     for (uint32_t s = 1; s <= strips; s++)
         task->start[s] += task->start[s - 1];
     size_t count = task->start[strips];
-    if (count > task->list_capacity) {
+    if (count > task->list_capacity || !task->list) {
         size_t capacity = count + count / 4 + 64;
         uint32_t *grown = realloc(task->list, capacity * sizeof *grown);
         if (!grown)
