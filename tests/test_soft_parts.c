@@ -312,7 +312,6 @@ static void drop(bool mesh, dem_vec3 out[3])
 {
     model *m = shaken(0);
     m->scene.wall_count = 0;
-    m->scene.shape_count = 0;
     m->laws[0].stiffness = 100;
     m->scene.time.step = 4e-5;
     dem_body_def *b = model_body(m, ring(m, 40, 0.01), v3(0.001, 0.0007, 0.0025));
