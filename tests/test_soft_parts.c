@@ -4,12 +4,9 @@
 
 static const double K = 1e5, OVERLAP = 0.005;  // grains are of about 1 m
 
-static model *soft_model(void)
+static model *soft_grain_model(void)
 {
-    model *m = model_new();
-    m->scene.multiple = DEM_MULTIPLE_SOFT;
-    m->scene.soft.tau = 0.0012;
-    m->scene.domain.leaving = DEM_LEAVING_IGNORE;
+    model *m = soft_model(0.0012);
     m->laws[0].stiffness = K;
     return m;
 }
@@ -58,7 +55,7 @@ static uint32_t hollow_box(model *m, size_t n)
 
 static int parts_of(uint32_t (*grain)(model *, size_t), size_t n)
 {
-    model *m = soft_model();
+    model *m = soft_grain_model();
     model_body(m, grain(m, n), v3(0, 0, 0));
     dem_world *w = model_world(m, 1);
     int parts = w->soft.parts ? w->soft.parts[0] : 1;
@@ -109,7 +106,7 @@ static void a_ring_that_lies_flat_has_one_stiffness(void **state)
 {
     (void)state;
     for (size_t n = 25; n <= 400; n *= 2) {
-        model *m = soft_model();
+        model *m = soft_grain_model();
         model_body(m, ring(m, n, 1.2), v3(0, 0, 0));
         check_near(lying_stiffness(m, 0.15), 3.06, 0.06);
         model_free(m);
@@ -120,7 +117,7 @@ static void a_ring_that_lies_flat_has_one_stiffness(void **state)
 static void a_dumbbell_lies_on_both_lobes(void **state)
 {
     (void)state;
-    model *m = soft_model();
+    model *m = soft_grain_model();
     model_body(m, dumbbell(m), v3(0, 0, 0));
     dem_world *w = model_world(m, 1);
     double q = w->soft.couplings[0].near[0][1], size = w->templates.items[0].equivalent_diameter;
@@ -153,7 +150,7 @@ static void forces_have_a_potential(void **state)
     (void)state;
     enum { STEPS = 1000 };
     for (int i = 0; i < 4; i++) {
-        model *m = soft_model();
+        model *m = soft_grain_model();
         if (i >= 2) {
             m->laws[0].normal = DEM_NORMAL_HERTZ;
             m->materials[0].young = 1e7;
@@ -195,13 +192,8 @@ static void forces_have_a_potential(void **state)
 
 static model *shaken(size_t count)
 {
-    model *m = soft_model();
-    m->scene.soft.tau = 4e-5;
-    m->scene.output.energy = true;
-    m->laws[0].damping = DEM_DAMPING_RESTITUTION;
-    m->laws[0].restitution = 0.6;
-    m->laws[0].friction = DEM_FRICTION_LINEAR;
-    m->laws[0].friction_coefficient = 0.4;
+    model *m = soft_lossy_model();
+    m->laws[0].stiffness = K;
     ring(m, 30, 0.01);
     model_cloud(m, 40, 0.01, 2);
     model_dumbbell(m, 0.003, 0.0065);
@@ -214,36 +206,17 @@ static model *shaken(size_t count)
     return m;
 }
 
-static uint64_t hash_of(const model *m, int threads, const char *kernels)
+static void has_parts_and_rubs(dem_world *w)
 {
-    const dem_soft_kernels *soft = kernels ? dem_soft_kernels_choose(kernels) : NULL;
-    if (kernels && !soft)
-        return 0;
-    dem_world *w = model_world(m, threads);
     check(w->soft.parts[0] > 4 && w->soft.parts[1] == 1 && w->soft.parts[2] == 2);
-    if (kernels) {
-        w->kernels = dem_kernels_choose(kernels);
-        w->soft.kernels = soft;
-    }
-    run_steps(w, 2000);
     check(measured(w)->energy.friction > 0 && measured(w)->largest_soft_overlap > 0);
-    uint64_t hash = dem_world_hash(w);
-    dem_world_destroy(w);
-    return hash;
 }
 
 static void bits_do_not_depend_on_threads_or_instructions(void **state)
 {
     (void)state;
     model *m = shaken(700);
-    uint64_t one = hash_of(m, 1, NULL);
-    check(hash_of(m, 2, NULL) == one);
-    check(hash_of(m, 8, NULL) == one);
-    static const char *const levels[] = {"plain", "v3", "v4"};
-    for (int i = 0; i < 3; i++) {
-        uint64_t other = hash_of(m, 2, levels[i]);
-        check(other == one || other == 0);
-    }
+    check_soft_bits(m, 2000, has_parts_and_rubs);
     model_free(m);
 }
 
@@ -252,15 +225,7 @@ static void a_run_goes_on_bit_for_bit(void **state)
     (void)state;
     model *m = shaken(100);
     m->scene.time.step = 0;
-    dem_world *straight = model_world(m, 1);
-    run_steps(straight, 700);
-    dem_world *again = model_resumed(m, straight, 1);
-    run_steps(straight, 700);
-    run_steps(again, 700);
-    check(dem_world_hash(straight) == dem_world_hash(again));
-    check(measured(straight)->energy.error == measured(again)->energy.error);
-    dem_world_destroy(again);
-    dem_world_destroy(straight);
+    dem_world_destroy(check_soft_resumed(m));
     model_free(m);
 }
 
