@@ -93,9 +93,13 @@ static void a_search_that_has_enough_stops_within_it(void **state)
     dem_random r = random_stream(4, 0);
     for (int i = 0; i < 3000; i++) {
         dem_vec3 p = v3_scale(random_direction(&r), 1.2 * random_uniform(&r));
-        double exact = dem_boundary_closest(&b, p, -1, INFINITY).distance, got = dem_boundary_closest(&b, p, 0.1, INFINITY).distance;
+        double exact = dem_boundary_closest(&b, p, -1, INFINITY).distance;
+        double got = dem_boundary_closest(&b, p, 0.1, INFINITY).distance;
         check(got >= exact);
         check(got <= fmax(exact, 0.1));
+        // what is known of it, or thought to be, changes nothing
+        check(dem_boundary_closest(&b, p, -1, 1.5 * exact + 1e-9).distance == exact);
+        check(dem_boundary_closest(&b, p, -1, 0.5 * exact).distance == exact);
     }
     dem_boundary_release(&b);
 }

@@ -422,7 +422,7 @@ static void a_world_that_grows_keeps_its_momentum(void **state)
             slots += w->contacts.segments[i].slot_count;
         run_steps(w, 1);
     }
-    check(slots > 20);
+    check(slots > 50);
     run_steps(w, 50);
     total_momentum(w, &now, &turning);
     now.z += w->population->came_mass;  // at 1 m/s

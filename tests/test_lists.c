@@ -123,6 +123,73 @@ static void nothing_is_missed_in_a_slit_with_walls_and_periodic_sides(void **sta
     model_free(m);
 }
 
+// 10 : 1 and 5 : 5 : 1, off their centres of mass
+static void add_rod_and_plate(model *m)
+{
+    dem_ball rod[12], plate[25];
+    for (int i = 0; i < 12; i++)
+        rod[i] = (dem_ball){v3((i - 5) * 1.6e-3, 0, 0), 1e-3};
+    for (int i = 0; i < 25; i++)
+        plate[i] = (dem_ball){v3((i % 5 - 1.8) * 2e-3, (i / 5 - 2) * 2e-3, 0), 1e-3};
+    model_clump(m, rod, 12, 1.4e-4, (double[]){1e-10, 4e-9, 4e-9});
+    model_clump(m, plate, 25, 2e-4, (double[]){1.7e-9, 1.7e-9, 3.4e-9});
+}
+
+static void nothing_is_missed_among_rods_and_plates(void **state)
+{
+    (void)state;
+    for (int periodic = 0; periodic < 2; periodic++) {
+        model *m = model_new();
+        add_rod_and_plate(m);
+        model_lattice(m, 125, 0.014, 2, 8);
+        model_box(m, v3(-0.01, -0.01, -0.01), v3(0.08, 0.08, 0.08));
+        if (periodic) {
+            m->scene.wall_count = 0;
+            m->scene.domain.low = v3(0, 0, 0);
+            m->scene.domain.high = v3(0.07, 0.07, 0.07);
+            for (int k = 0; k < 3; k++)
+                m->scene.domain.periodic[k] = true;
+        }
+        tally t = run_and_compare(m, 20, 61);
+        check(t.contacts > 40);
+        model_free(m);
+    }
+}
+
+// centres stay where they are: only their turning brings rods to each other
+static void nothing_is_missed_among_rods_that_spin_in_place(void **state)
+{
+    (void)state;
+    model *m = model_new();
+    add_rod_and_plate(m);
+    m->scene.shape_count = 1;
+    model_lattice(m, 125, 0.0135, 0, 9);
+    for (size_t i = 0; i < m->scene.bodies.count; i++) {
+        dem_body_def *b = &m->bodies[i];
+        b->orientation = (dem_quat){1, 0, 0, 0};
+        b->spin = v3(0, i % 2 ? 300 : -200, i % 3 ? 150 : 250);
+    }
+    tally t = run_and_compare(m, 40, 7);
+    check(t.contacts > 50);
+    model_free(m);
+}
+
+// pairs whose boxes are far from each other are not kept
+static void parallel_rods_have_few_near_pairs(void **state)
+{
+    (void)state;
+    model *m = model_new();
+    add_rod_and_plate(m);
+    for (int i = 0; i < 64; i++)
+        model_body(m, 0, v3(0, i % 8 * 4e-3, i / 8 * 4e-3));
+    dem_world *w = model_world(m, 1);
+    // beside, above and across; their balls are all near to each other
+    check(w->skin > 2e-3 && w->skin < 6e-3);
+    assert_int_equal(w->pairs.count, 2 * 7 * 8 + 2 * 7 * 7);
+    dem_world_destroy(w);
+    model_free(m);
+}
+
 // a far outlier does not cost the grid its cells, nor the others their pairs
 static void nothing_is_missed_with_bodies_far_away(void **state)
 {
@@ -186,6 +253,9 @@ int main(void)
         cmocka_unit_test(nothing_is_missed_with_bodies_far_away),
         cmocka_unit_test(nothing_is_missed_inside_and_outside_of_cylinders),
         cmocka_unit_test(nothing_is_missed_when_walls_move),
+        cmocka_unit_test(nothing_is_missed_among_rods_and_plates),
+        cmocka_unit_test(nothing_is_missed_among_rods_that_spin_in_place),
+        cmocka_unit_test(parallel_rods_have_few_near_pairs),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

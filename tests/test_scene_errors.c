@@ -257,10 +257,9 @@ static void soft_contacts_refuse_what_they_do_not_have(void **state)
     S "'materials': {'a': {'density': 1, 'young': 1e9, 'poisson': 0.2}},\n'contacts': [{'between': ['a', 'a'], " law   \
       "}],\n'contacts_between_clumps': 'soft'}"
     static const refusal cases[] = {
-        {SOFT_WITH("'normal': {'stiffness': 1}, 'rolling': {'law': 'bounded', 'coefficient': 0.1}"), 4,
-         "contacts_between_clumps: is 'soft', which does not go with the rolling resistance of contacts 0 (column 28); "
+        {SOFT_WITH("'normal': {'law': 'jkr', 'work_of_adhesion': 1}"), 4,
+         "contacts_between_clumps: is 'soft', which does not go with the adhesion of contacts 0 (column 28); "
          "take 'sum', or leave that out"},
-        {SOFT_WITH("'normal': {'law': 'jkr', 'work_of_adhesion': 1}"), 4, "~does not go with the adhesion"},
         {SOFT_WITH("'normal': {'stiffness': 1}, 'cohesion': {'law': 'sjkr', 'energy_density': 1}"), 4, "~the cohesion"},
         {S "'soft': {'tau': 1e-6}}", 2,
          "soft: is of contacts_between_clumps 'soft', which is not set (column 9); set it, or leave this out"},

@@ -3,12 +3,9 @@
 
 static const double K = 1e5, OVERLAP = 0.005;  // grains are of about 1 m
 
-static model *soft_model(void)
+static model *soft_grain_model(void)
 {
-    model *m = model_new();
-    m->scene.multiple = DEM_MULTIPLE_SOFT;
-    m->scene.soft.tau = 0.0012;
-    m->scene.domain.leaving = DEM_LEAVING_IGNORE;
+    model *m = soft_model(0.0012);
     m->laws[0].stiffness = K;
     return m;
 }
@@ -25,12 +22,29 @@ static void damp(dem_pair_law *law, double restitution, double friction)
 
 // ---- one sphere
 
-static void run_spheres(dem_multiple multiple, dem_normal_law normal, dem_vec3 out[8], double *error)
+// moments against turning, by `which`: none, and each of the laws
+enum { TURNINGS = 6 };
+static void resist(dem_pair_law *law, int which)
 {
-    model *m = soft_model();
+    static const dem_rolling_law rolling[TURNINGS] = {DEM_ROLLING_NONE, DEM_ROLLING_EPSD, DEM_ROLLING_CONSTANT,
+                                                      DEM_ROLLING_BOUNDED, DEM_ROLLING_NONE, DEM_ROLLING_EPSD};
+    static const dem_twisting_law twisting[TURNINGS] = {DEM_TWISTING_NONE, DEM_TWISTING_NONE, DEM_TWISTING_CONSTANT,
+                                                        DEM_TWISTING_NONE, DEM_TWISTING_MARSHALL,
+                                                        DEM_TWISTING_MARSHALL};
+    law->rolling = rolling[which];
+    law->rolling_coefficient = 0.1;
+    law->rolling_damping = 0.3;
+    law->twisting = twisting[which];
+    law->twisting_coefficient = 0.05;
+}
+
+static void run_spheres(dem_multiple multiple, dem_normal_law normal, int turning, dem_vec3 out[8], double *error)
+{
+    model *m = soft_grain_model();
     m->scene.multiple = multiple;
     damp(&m->laws[0], 0.5, 0.5);
     m->laws[0].normal = normal;
+    resist(&m->laws[0], turning);
     if (normal == DEM_NORMAL_HERTZ) {
         m->laws[0].friction = DEM_FRICTION_MINDLIN;
         m->materials[0].young = 1e7;
@@ -45,7 +59,8 @@ static void run_spheres(dem_multiple multiple, dem_normal_law normal, dem_vec3 o
     model_body(m, shape, v3(0.15, 0.1, 1.5))->velocity = v3(0, 0, -0.8);
     model_plane(m, v3(0, 0, 0), v3(0, 0, 1));
     dem_world *w = model_world(m, 1);
-    run_steps(w, 5000);
+    // constant moments tremble at rest, by the last bit
+    run_steps(w, turning == 2 ? 1200 : 5000);
     *error = measured(w)->energy.error;
     dem_body_view v = dem_world_bodies(w);
     for (int i = 0; i < 2; i++) {
@@ -62,14 +77,17 @@ static void run_spheres(dem_multiple multiple, dem_normal_law normal, dem_vec3 o
 static void single_spheres_are_as_with_the_sum(void **state)
 {
     (void)state;
-    for (dem_normal_law normal = DEM_NORMAL_LINEAR; normal <= DEM_NORMAL_HERTZ; normal++) {
+    for (int k = 0; k < 2 * TURNINGS; k++) {
+        dem_normal_law normal = k % 2 ? DEM_NORMAL_HERTZ : DEM_NORMAL_LINEAR;
         dem_vec3 soft[8], sum[8];
         double error_soft, error_sum;
-        run_spheres(DEM_MULTIPLE_SOFT, normal, soft, &error_soft);
-        run_spheres(DEM_MULTIPLE_SUM, normal, sum, &error_sum);
+        // patches remember the stiffness of a step ago, where single contacts reckon it from the overlap's speed
+        bool marshall = k / 2 >= 4;
+        run_spheres(DEM_MULTIPLE_SOFT, normal, k / 2, soft, &error_soft);
+        run_spheres(DEM_MULTIPLE_SUM, normal, k / 2, sum, &error_sum);
         for (int i = 0; i < 8; i++)
-            check_vec(soft[i], sum[i], i % 4 == 3 ? 1e-6 : 1e-9);
-        check_near(error_soft, error_sum, 1e-9);
+            check_vec(soft[i], sum[i], i % 4 == 3 ? (marshall ? 0.1 : 1e-6) : marshall ? 2e-4 : 1e-9);
+        check_near(error_soft, error_sum, marshall ? 1e-4 : 1e-9);
         check(fabs(error_sum) < 1e-2 && v3_norm(sum[3]) > 1);
     }
 }
@@ -82,7 +100,7 @@ typedef struct stiffness {
 
 static stiffness stiffness_of(dem_multiple multiple, size_t spheres, bool twin)
 {
-    model *m = soft_model();
+    model *m = soft_grain_model();
     m->scene.multiple = multiple;
     uint32_t shape = model_ellipsoid(m, spheres);
     for (int i = 0; i < 1 + twin; i++)
@@ -179,7 +197,7 @@ static double one_bounce(dem_world *w, bool twin, dem_random *r)
 // mean over some impacts at random attitudes
 static double restitution_of(dem_multiple multiple, size_t n, bool twin, int impacts)
 {
-    model *m = soft_model();
+    model *m = soft_grain_model();
     m->scene.multiple = multiple;
     damp(&m->laws[0], 0.8, 0);
     uint32_t shape = model_ellipsoid(m, n);
@@ -214,7 +232,7 @@ static void hertz_has_the_radius_of_the_grain(void **state)
 {
     (void)state;
     for (int i = 0; i < 2; i++) {
-        model *m = soft_model();
+        model *m = soft_grain_model();
         m->laws[0].normal = DEM_NORMAL_HERTZ;
         m->materials[0].young = 1e8;
         model_body(m, model_ellipsoid(m, i == 0 ? 10 : 200), v3(0, 0, 0))->orientation = (dem_quat){0.9, 0.3, -0.2, 0.1};
@@ -239,7 +257,7 @@ static void hertz_has_the_radius_of_the_grain(void **state)
 static path_figures closed_path(dem_multiple multiple, size_t n, uint64_t seed)
 {
     enum { STEPS = 1200 };
-    model *m = soft_model();
+    model *m = soft_grain_model();
     m->scene.multiple = multiple;
     uint32_t shape = model_ellipsoid(m, n);
     model_body(m, shape, v3(0, 0, 0));
@@ -272,7 +290,7 @@ static void a_closed_path_takes_no_work_and_forces_do_not_jump(void **state)
 
 static void run_with_copies(size_t copies, dem_vec3 out[4])
 {
-    model *m = soft_model();
+    model *m = soft_grain_model();
     damp(&m->laws[0], 0.6, 0.4);
     uint32_t shape = model_ellipsoid(m, 60);
     dem_clump_def def = dem_clump_view(m->clumps[shape]);
@@ -336,7 +354,7 @@ static void a_cube_keeps_its_rocking_stiffness(void **state)
 {
     (void)state;
     for (int n = 3; n <= 9; n += 2) {
-        model *m = soft_model();
+        model *m = soft_grain_model();
         m->scene.soft.tau = OVERLAP / 1.6;
         model_body(m, cube(m, n), v3(0, 0, 0));
         model_plane(m, v3(0, 0, 0), v3(0, 0, 1));
@@ -365,7 +383,7 @@ static void a_cube_keeps_its_rocking_stiffness(void **state)
 static void a_cube_rests_flat_and_does_not_creep(void **state)
 {
     (void)state;
-    model *m = soft_model();
+    model *m = soft_grain_model();
     damp(&m->laws[0], 0.3, 0.3);
     double sink = 2500 * 9.81 / 1e6;
     m->laws[0].stiffness = 1e6;
@@ -396,7 +414,7 @@ static void contacts_of_any_stiffness_keep_a_ledger(void **state)
     (void)state;
     static const double stiff[] = {1, 1e9, 1e20};
     for (int i = 0; i < 3; i++) {
-        model *m = soft_model();
+        model *m = soft_grain_model();
         m->scene.output.energy = true;
         m->scene.time.step = 0;
         m->laws[0].stiffness = stiff[i];

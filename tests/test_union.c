@@ -444,6 +444,26 @@ static void a_hundred_thousand_balls_are_done_in_time(void **state)
     free(balls);
 }
 
+static void any_number_of_threads_gives_the_same_bits(void **state)
+{
+    (void)state;
+    enum { COUNT = 300 };
+    dem_ball balls[COUNT];
+    dem_random r = random_stream(17, 0);
+    clump_like(&r, balls, COUNT);
+    dem_ball_union alone = compute(balls, COUNT);
+    for (int threads = 1; threads <= 8; threads *= 2) {
+        dem_ball_union u;
+        dem_error error;
+        check_ok(dem_ball_union_compute(balls, COUNT, false, threads, &u, &error), error);
+        check(memcmp(u.patches, alone.patches, COUNT * sizeof *u.patches) == 0);
+        check(memcmp(&u.moments, &alone.moments, sizeof u.moments) == 0);
+        check(u.area == alone.area && u.redundant == alone.redundant && u.consistent);
+        dem_ball_union_release(&u);
+    }
+    dem_ball_union_release(&alone);
+}
+
 static void balls_that_are_none_are_refused(void **state)
 {
     (void)state;
@@ -475,6 +495,7 @@ int main(void)
         cmocka_unit_test(creases_lie_on_two_balls_and_inside_no_other),
         cmocka_unit_test(pieces_are_counted_with_a_margin),
         cmocka_unit_test(a_hundred_thousand_balls_are_done_in_time),
+        cmocka_unit_test(any_number_of_threads_gives_the_same_bits),
         cmocka_unit_test(balls_that_are_none_are_refused),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

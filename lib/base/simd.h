@@ -164,23 +164,37 @@ DEM_INLINE void rows_load(const double *base, size_t stride, const uint32_t *ind
     columns4(low, out);
     columns4(high, out + 4);
 }
-DEM_INLINE void rows_load_next(const double *base, size_t stride, wide out[8])
+DEM_INLINE void rows_load_next4(const double *base, size_t stride, wide out[4])
 {
-    const double *low[8], *high[8];
-    for (int i = 0; i < 8; i++) {
-        low[i] = base + stride * (size_t)i;
-        high[i] = low[i] + 4;
-    }
-    columns4(low, out);
-    columns4(high, out + 4);
-}
-DEM_INLINE void rows_store_next(double *base, size_t stride, wide *columns)
-{
-    transpose8(columns);
+    const double *row[8];
     for (int i = 0; i < 8; i++)
-        _mm512_store_pd(base + stride * (size_t)i, columns[i]);
+        row[i] = base + stride * (size_t)i;
+    columns4(row, out);
 }
-// one row after the other: an index may stand twice
+// half rows, two to a register: of rows 0 and 2, 4 and 6, 1 and 3, 5 and 7
+DEM_INLINE void half_rows(const wide *c, wide out[4])
+{
+    const __m512i low = _mm512_setr_epi64(0, 1, 8, 9, 2, 3, 10, 11);
+    const __m512i high = _mm512_setr_epi64(4, 5, 12, 13, 6, 7, 14, 15);
+    wide even = _mm512_unpacklo_pd(c[0], c[1]), even_more = _mm512_unpacklo_pd(c[2], c[3]);
+    wide odd = _mm512_unpackhi_pd(c[0], c[1]), odd_more = _mm512_unpackhi_pd(c[2], c[3]);
+    out[0] = _mm512_permutex2var_pd(even, low, even_more);
+    out[1] = _mm512_permutex2var_pd(even, high, even_more);
+    out[2] = _mm512_permutex2var_pd(odd, low, odd_more);
+    out[3] = _mm512_permutex2var_pd(odd, high, odd_more);
+}
+// to memory in halves, which needs fewer shuffles than whole rows
+DEM_INLINE void rows_store_next4(double *base, size_t stride, const wide *columns)
+{
+    wide h[4];
+    half_rows(columns, h);
+    for (size_t i = 0; i < 8; i++) {
+        wide pair = h[2 * (i & 1) + i / 4];
+        _mm256_store_pd(base + stride * i, i & 2 ? _mm512_extractf64x4_pd(pair, 1) : _mm512_castpd512_pd256(pair));
+    }
+}
+// One row after the other: an index may stand twice. (Adding by halves, which takes a third of the shuffles, is no
+// faster: it is the rows that are waited for.)
 DEM_INLINE void rows_add(double *base, const uint32_t *index, wide *columns, const bool minus)
 {
     transpose8(columns);
@@ -345,21 +359,18 @@ DEM_INLINE void rows_load(const double *base, size_t stride, const uint32_t *ind
     rows_load4(base, stride, index, out);
     rows_load4(base + 4, stride, index, out + 4);
 }
-DEM_INLINE void rows_load_next(const double *base, size_t stride, wide out[8])
+DEM_INLINE void rows_load_next4(const double *base, size_t stride, wide out[4])
 {
-    for (int half = 0; half < 2; half++) {
-        for (int i = 0; i < 4; i++)
-            out[4 * half + i] = _mm256_load_pd(base + stride * (size_t)i + 4 * half);
-        transpose4(out + 4 * half);
-    }
+    for (int i = 0; i < 4; i++)
+        out[i] = _mm256_load_pd(base + stride * (size_t)i);
+    transpose4(out);
 }
-DEM_INLINE void rows_store_next(double *base, size_t stride, wide *columns)
+DEM_INLINE void rows_store_next4(double *base, size_t stride, const wide *columns)
 {
-    for (int half = 0; half < 2; half++) {
-        transpose4(columns + 4 * half);
-        for (int i = 0; i < 4; i++)
-            _mm256_store_pd(base + stride * (size_t)i + 4 * half, columns[4 * half + i]);
-    }
+    wide row[4] = {columns[0], columns[1], columns[2], columns[3]};
+    transpose4(row);
+    for (int i = 0; i < 4; i++)
+        _mm256_store_pd(base + stride * (size_t)i, row[i]);
 }
 DEM_INLINE void rows_add(double *base, const uint32_t *index, wide *columns, const bool minus)
 {
@@ -529,15 +540,15 @@ DEM_INLINE void rows_load(const double *base, size_t stride, const uint32_t *ind
 {
     memcpy(out, base + stride * *index, 8 * sizeof *out);
 }
-DEM_INLINE void rows_load_next(const double *base, size_t stride, wide out[8])
+DEM_INLINE void rows_load_next4(const double *base, size_t stride, wide out[4])
 {
     (void)stride;
-    memcpy(out, base, 8 * sizeof *out);
+    memcpy(out, base, 4 * sizeof *out);
 }
-DEM_INLINE void rows_store_next(double *base, size_t stride, wide *columns)
+DEM_INLINE void rows_store_next4(double *base, size_t stride, const wide *columns)
 {
     (void)stride;
-    memcpy(base, columns, 8 * sizeof *columns);
+    memcpy(base, columns, 4 * sizeof *columns);
 }
 DEM_INLINE void rows_add(double *base, const uint32_t *index, wide *columns, const bool minus)
 {
@@ -593,9 +604,22 @@ DEM_INLINE void indices_pack(uint32_t *p, uint32_t bits, uint32_t first)
 }
 #endif
 
-/// 1 / sqrt(a) and sqrt(a) of a >= 1e-300, to a rounding: a guess from the bits, the polynomial of degree 3 in
-/// h = 1 - a y^2 that is best for the h it leaves (7.5e-7), and a step of third order (1e-18). A root and a division keep
-/// the divider of Sapphire Rapids busy for 34 cycles, this takes 15 instructions; it is as long to wait for, though.
+/// Rows that stand one after the other, whole.
+DEM_INLINE void rows_load_next(const double *base, size_t stride, wide out[8])
+{
+    rows_load_next4(base, stride, out);
+    rows_load_next4(base + 4, stride, out + 4);
+}
+DEM_INLINE void rows_store_next(double *base, size_t stride, const wide *columns)
+{
+    rows_store_next4(base, stride, columns);
+    rows_store_next4(base + 4, stride, columns + 4);
+}
+
+/// 1 / sqrt(a) and sqrt(a) of a >= 1e-300, to 1.6 units of the last place: a guess from the bits, the polynomial of
+/// degree 3 in h = 1 - a y^2 that is best for the h it leaves (7.5e-7), and a step of third order (1e-18). A root and a
+/// division keep the divider of Sapphire Rapids busy for 34 cycles, this takes 15 instructions; it is as long to wait
+/// for, though.
 DEM_INLINE wide wide_roots(wide a, wide *root)
 {
     wide y = wide_root_guess(a), r = a * y, h = wide_fnma(r, y, wide_all(1)), h2 = h * h;
@@ -614,6 +638,14 @@ DEM_INLINE wide wide_rsqrt(wide a)
 {
     wide root;
     return wide_roots(a, &root);
+}
+
+/// sqrt(a) of a >= 0, likewise, but that of nothing is 1e-150; and 1 / sqrt(a).
+DEM_INLINE wide wide_root(wide a, wide *inverse)
+{
+    wide root;
+    *inverse = wide_roots(a + wide_all(1e-300), &root);
+    return root;
 }
 
 /// 2^k of whole -1022 <= k <= 1023: the last bits of 1.5 2^52 + x are those of the whole number x.

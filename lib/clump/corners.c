@@ -143,8 +143,8 @@ static int larger_first(const void *left, const void *right)
     return a->centre.x < b->centre.x ? -1 : a->centre.x > b->centre.x;
 }
 
-// The least of `least` and of the radii of the balls that touch p from inside (normal n) and come SMOOTH deep to a point
-// q: with e = p - q that is r = (e.e - SMOOTH^2) / (2 (n.e - SMOOTH)) for every q with n.e > SMOOTH.
+// The least of `least` and of the radii of the balls that touch p from inside (normal n) and come SMOOTH deep to a
+// point q: with e = p - q that is r = (e.e - SMOOTH^2) / (2 (n.e - SMOOTH)) for every q with n.e > SMOOTH.
 static float least_radius(dem_vec3 p, dem_vec3 n, const float *x, const float *y, const float *z, size_t count,
                           float least)
 {

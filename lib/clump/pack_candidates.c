@@ -65,8 +65,8 @@ double dem_medial_radius(const dem_tree *tree, dem_vec3 p, dem_vec3 n)
     return shrink_in_tree(tree, p, n, largest_radius);
 }
 
-// Shrinks to some of the samples that lie deepest inside, one after the other: what is left for the tree is a ball hardly
-// too large, which meets few of its boxes.
+// Shrinks to some of the samples that lie deepest inside, one after the other: what is left for the tree is a ball
+// hardly too large, which meets few of its boxes.
 static double shrink_to_points(const dem_pack_kernels *kernels, const dem_point_columns *points, dem_vec3 p, dem_vec3 n)
 {
     const float at[3] = {(float)p.x, (float)p.y, (float)p.z}, out[3] = {(float)n.x, (float)n.y, (float)n.z};
@@ -167,8 +167,9 @@ static bool take_sparse(const dem_samples *samples, dem_point_columns *few)
     return true;
 }
 
-dem_status dem_candidates_build(const dem_pack_grain *grain, const dem_samples *samples, const dem_pack_kernels *kernels,
-                                size_t count, int threads, dem_candidates *candidates, dem_error *error)
+dem_status dem_candidates_build(const dem_pack_grain *grain, const dem_samples *samples,
+                                const dem_pack_kernels *kernels, size_t count, int threads,
+                                dem_candidates *candidates, dem_error *error)
 {
     *candidates = (dem_candidates){0};
     const dem_mesh *shell = &grain->shell;

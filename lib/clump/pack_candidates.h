@@ -14,8 +14,9 @@ typedef struct dem_candidates {
 /// than 2 / 1000 of its radius.
 double dem_medial_radius(const dem_tree *tree, dem_vec3 p, dem_vec3 n);
 
-dem_status dem_candidates_build(const dem_pack_grain *grain, const dem_samples *samples, const dem_pack_kernels *kernels,
-                                size_t count, int threads, dem_candidates *candidates, dem_error *error);
+dem_status dem_candidates_build(const dem_pack_grain *grain, const dem_samples *samples,
+                                const dem_pack_kernels *kernels, size_t count, int threads,
+                                dem_candidates *candidates, dem_error *error);
 void dem_candidates_release(dem_candidates *candidates);
 
 /// Chooses up to `most` balls, candidates made larger by one of `inflations`, each time the one that shrinks the

@@ -81,11 +81,12 @@ typedef struct dem_near_list {
 } dem_near_list;
 
 typedef struct dem_pack_kernels {
-    /// Copies the balls that are nearest or second nearest to some place in the bound while none moves by more than half
-    /// of `slack`, in their order, to `some`, which has room for all; ids[k] is where some[k] comes from.
+    /// Copies the balls that are nearest or second nearest to some place in the bound while none moves by more than
+    /// half of `slack`, in their order, to `some`, which has room for all; ids[k] is where some[k] comes from.
     void (*gather_near)(const dem_ball_columns *balls, const dem_block_bound *bound, float slack,
                         const dem_near_work *work, dem_ball_columns *some, uint32_t *ids);
-    /// Lists these balls roughly by their distances; `list` and `least` have room for all, padded. Returns their number.
+    /// Lists these balls roughly by their distances; `list` and `least` have room for all, padded. Returns their
+    /// number.
     size_t (*list_near)(const dem_ball_columns *balls, const dem_block_bound *bound, float slack,
                         const dem_near_work *work, uint32_t *list, float *least);
     /// Nearest of the listed balls for each sample: f and owner.

@@ -123,22 +123,43 @@ static dem_status take_work_space(dem_lines *lines, dem_error *error)
     return lines->arena.failed ? dem_fail_memory(error) : DEM_OK;
 }
 
+// what the crew shares: the lines of each axis
+typedef struct columns_of {
+    const dem_pack_grain *grain;
+    double step;
+    const double *offsets;
+    dem_columns columns[3];
+    dem_status status[3];
+    dem_error error[3];
+} columns_of;
+
+static void build_columns(void *user, int axis)
+{
+    columns_of *c = user;
+    c->status[axis] =
+        dem_columns_build(c->grain, axis, c->step, margin, c->offsets, &c->columns[axis], &c->error[axis]);
+}
+
 dem_status dem_lines_build(const dem_pack_grain *grain, const dem_pack_kernels *kernels, double step,
                            const double offsets[2], size_t capacity, dem_crew *crew, dem_lines *lines, dem_error *error)
 {
     *lines = (dem_lines){.kernels = kernels, .capacity = capacity, .crew = crew,
                          .uncovered = 1, .protruding = 1, .slack = first_slack};
+    columns_of of = {.grain = grain, .step = step, .offsets = offsets};
     dem_status status = DEM_OK;
-    for (int axis = 0; axis < 3 && status == DEM_OK; axis++) {
-        dem_columns columns;
-        status = dem_columns_build(grain, axis, step, margin, offsets, &columns, error);
-        if (status != DEM_OK)
-            break;
-        status = fill_field(lines, &columns, &lines->fields[axis], error);
-        lines->grain_length[axis] = length_inside(&columns);
-        dem_columns_release(&columns);
+    dem_crew_run(crew, 3, build_columns, &of);
+    for (int axis = 0; axis < 3; axis++) {
+        if (status == DEM_OK && of.status[axis] != DEM_OK) {
+            status = of.status[axis];
+            *error = of.error[axis];
+        }
         if (status == DEM_OK)
+            status = fill_field(lines, &of.columns[axis], &lines->fields[axis], error);
+        if (status == DEM_OK) {
+            lines->grain_length[axis] = length_inside(&of.columns[axis]);
             share_rows(lines, axis);
+        }
+        dem_columns_release(&of.columns[axis]);
     }
     if (status == DEM_OK)
         status = take_work_space(lines, error);
@@ -200,7 +221,7 @@ static bool list_strips(const dem_lines *lines, const dem_ball_columns *balls, d
     for (uint32_t s = 1; s <= strips; s++)
         task->start[s] += task->start[s - 1];
     size_t count = task->start[strips];
-    if (count > task->list_capacity) {
+    if (count > task->list_capacity || !task->list) {
         size_t capacity = count + count / 4 + 64;
         uint32_t *grown = realloc(task->list, capacity * sizeof *grown);
         if (!grown)

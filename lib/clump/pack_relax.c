@@ -6,6 +6,8 @@
 #include "clump/pack_connect.h"
 #include "clump/packing.h"
 
+enum { SUM_PARTS = 8 };
+
 static const double least_damping = 1e-4, most_damping = 50;
 static const double longest_step = 0.3;  // of the ball's radius
 
@@ -20,7 +22,7 @@ static bool open_slots(dem_pack_chunk *chunk, const uint32_t *owners, size_t cou
             return false;
         chunk->slot[i] = (int32_t)chunk->touched_count;
         chunk->lanes[chunk->touched_count] = (dem_equation_lanes){0};
-        chunk->touched[chunk->touched_count++] = i;
+        chunk->touched_count++;
     }
     return true;
 }
@@ -48,21 +50,6 @@ static void add_equations(dem_packing *p, dem_pack_chunk *chunk, const dem_pack_
     }
 }
 
-static void sum_equations(dem_packing *p, dem_pack_chunk *chunk)
-{
-    for (size_t t = 0; t < chunk->touched_count; t++) {
-        const dem_equation_lanes *lanes = &chunk->lanes[t];
-        double *sum = p->equations[chunk->touched[t]];
-        for (int q = 0; q < DEM_EQUATION; q++) {
-            float half[8];
-            for (int l = 0; l < 8; l++)
-                half[l] = lanes->sum[q][l] + lanes->sum[q][l + 8];
-            sum[q] += (double)(((half[0] + half[4]) + (half[2] + half[6])) + ((half[1] + half[5]) + (half[3] + half[7])));
-        }
-        chunk->slot[chunk->touched[t]] = -1;
-    }
-}
-
 // what the crew shares: chunks of one state
 typedef struct shared {
     dem_packing *p;
@@ -75,17 +62,43 @@ static void equations_part(void *user, int part)
     add_equations(s->p, &s->p->chunks[part], s->state);
 }
 
-static dem_status assemble(dem_packing *p, const dem_pack_state *state, dem_error *error)
+static void add_lanes(const dem_equation_lanes *lanes, double sum[DEM_EQUATION])
 {
-    for (size_t i = 0; i < state->count; i++)
+    for (int q = 0; q < DEM_EQUATION; q++) {
+        float half[8];
+        for (int l = 0; l < 8; l++)
+            half[l] = lanes->sum[q][l] + lanes->sum[q][l + 8];
+        sum[q] += (double)(((half[0] + half[4]) + (half[2] + half[6])) + ((half[1] + half[5]) + (half[3] + half[7])));
+    }
+}
+
+// of a share of the balls the sums of all chunks, in their order
+static void sum_part(void *user, int part)
+{
+    const shared *s = user;
+    dem_packing *p = s->p;
+    size_t begin = s->state->count * (size_t)part / SUM_PARTS, end = s->state->count * (size_t)(part + 1) / SUM_PARTS;
+    for (size_t i = begin; i < end; i++)
         for (int q = 0; q < DEM_EQUATION; q++)
             p->equations[i][q] = 0;
-    dem_crew_run(p->crew, DEM_CHUNKS, equations_part, &(shared){p, state});
-    bool failed = false;
     for (int k = 0; k < DEM_CHUNKS; k++) {
-        sum_equations(p, &p->chunks[k]);
-        failed |= p->chunks[k].failed;
+        dem_pack_chunk *chunk = &p->chunks[k];
+        for (size_t i = begin; i < end; i++)
+            if (chunk->slot[i] >= 0) {
+                add_lanes(&chunk->lanes[chunk->slot[i]], p->equations[i]);
+                chunk->slot[i] = -1;
+            }
     }
+}
+
+static dem_status assemble(dem_packing *p, const dem_pack_state *state, dem_error *error)
+{
+    shared s = {p, state};
+    dem_crew_run(p->crew, DEM_CHUNKS, equations_part, &s);
+    dem_crew_run(p->crew, SUM_PARTS, sum_part, &s);
+    bool failed = false;
+    for (int k = 0; k < DEM_CHUNKS; k++)
+        failed |= p->chunks[k].failed;
     return failed ? dem_fail_memory(error) : DEM_OK;
 }
 

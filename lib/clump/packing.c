@@ -77,7 +77,6 @@ static dem_status take_work_space(dem_packing *p, dem_error *error)
         take_columns(p, &chunk->some, padded);
         chunk->ids = dem_arena_take(&p->arena, padded, sizeof *chunk->ids);
         chunk->slot = dem_arena_take(&p->arena, n, sizeof *chunk->slot);
-        chunk->touched = dem_arena_take(&p->arena, n, sizeof *chunk->touched);
         for (size_t i = 0; chunk->slot && i < n; i++)
             chunk->slot[i] = -1;
     }

@@ -46,8 +46,7 @@ typedef struct dem_pack_chunk {
     float *near_least;           ///< as in dem_near_list
     size_t near_count, near_capacity;
     int32_t *slot;               ///< [capacity] of a ball in `lanes`; -1: not touched
-    uint32_t *touched;           ///< [capacity] the balls that have a slot
-    size_t touched_count;
+    size_t touched_count;        ///< balls that have a slot
     dem_equation_lanes *lanes;
     size_t lane_capacity;
     bool failed;                 ///< out of memory

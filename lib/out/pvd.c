@@ -120,18 +120,26 @@ dem_status dem_pvd_remove(const char *directory, const char *folder, const char 
 
 // ---- writing
 
-static dem_status write_index(const dem_pvd *index, dem_error *error)
+static void put_lines(dem_buffer *out, const dem_pvd_entry *entry)
+{
+    for (int part = 0; part < DEM_PVD_PARTS; part++)
+        if (entry->files[part][0]) {
+            dem_buffer_text(out, SET);
+            dem_buffer_shortest(out, entry->time);
+            dem_buffer_print(out, "%s%d%s%s%s", PART, part, NAMED, entry->files[part], CLOSE);
+        }
+}
+
+// only what is new is printed
+static dem_status write_index(dem_pvd *index, dem_error *error)
 {
     dem_buffer out = {0};
+    for (; index->printed < index->count; index->printed++)
+        put_lines(&index->lines, &index->entries[index->printed]);
     dem_buffer_text(&out, HEAD);
-    for (size_t i = 0; i < index->count; i++)
-        for (int part = 0; part < DEM_PVD_PARTS; part++)
-            if (index->entries[i].files[part][0]) {
-                dem_buffer_text(&out, SET);
-                dem_buffer_shortest(&out, index->entries[i].time);
-                dem_buffer_print(&out, "%s%d%s%s%s", PART, part, NAMED, index->entries[i].files[part], CLOSE);
-            }
+    dem_buffer_bytes(&out, index->lines.data, index->lines.size);
     dem_buffer_text(&out, TAIL);
+    out.failed |= index->lines.failed;
     return dem_file_queue_put(index->queue, index->path, &out, error);
 }
 
@@ -159,5 +167,6 @@ void dem_pvd_release(dem_pvd *index)
 {
     free(index->path);
     free(index->entries);
+    dem_buffer_release(&index->lines);
     *index = (dem_pvd){0};
 }

@@ -17,6 +17,8 @@ typedef struct dem_pvd {
     dem_file_queue *queue;  ///< borrowed, to be set by the caller; NULL: writes at once
     dem_pvd_entry *entries;
     size_t count, capacity;
+    dem_buffer lines;  ///< of the first `printed` entries
+    size_t printed;
 } dem_pvd;
 
 /// Begins an index; with a time in `resume` [s] (NAN: a new run) it goes on with the entries of the file that is there,

@@ -40,7 +40,7 @@ typedef struct runner {
     double next_frame, next_series, next_network, next_checkpoint;  // [s]; the last by either clock
     double started, diagnosed;                        // by the wall's clock
     double diagnosing;                                // what it took the last time [s]
-    double output_seconds, timed_since;
+    double output_seconds, ending_seconds, timed_since;
     uint64_t timed_from;     // step
     uint64_t measured_step;  // of the views; UINT64_MAX: none
 } runner;
@@ -361,7 +361,7 @@ static dem_status finish(runner *r, dem_error *error)
     if (r->scene->bond_count)
         DEM_TRY(write_breakages(r, error));
     DEM_TRY(dem_file_queue_wait(r->queue, error));
-    r->output_seconds += dem_clock() - begin;
+    r->ending_seconds = dem_clock() - begin;
     return DEM_OK;
 }
 
@@ -377,7 +377,7 @@ static dem_status conclude(runner *r, dem_error *error)
     result->bytes_per_body = dem_world_bytes_per_body(r->w);
     result->threads = r->w->threads;
     result->warmup = r->options->warmup;
-    result->passes = dem_alloc(count + 1, sizeof *result->passes);
+    result->passes = dem_alloc(count + 2, sizeof *result->passes);
     if (!result->passes)
         return dem_fail_memory(error);
     const dem_inlet_view *inlets = dem_world_inlets(r->w, &result->inlet_count);
@@ -390,7 +390,8 @@ static dem_status conclude(runner *r, dem_error *error)
     }
     memcpy(result->passes, passes, count * sizeof *passes);
     result->passes[count] = (dem_pass_time){"output", r->output_seconds};
-    result->pass_count = count + 1;
+    result->passes[count + 1] = (dem_pass_time){"ending", r->ending_seconds};
+    result->pass_count = count + 2;
     return DEM_OK;
 }
 

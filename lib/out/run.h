@@ -24,7 +24,7 @@ typedef struct dem_run_result {
     uint64_t warmup;
     double bytes_per_body;
     int threads;
-    dem_pass_time *passes;  ///< seconds of the timed steps; the last one is the output's
+    dem_pass_time *passes;  ///< seconds of the timed steps; then of output in between, and of ending
     size_t pass_count;
     dem_inlet_view *inlets;  ///< with the names of the scene
     size_t inlet_count;

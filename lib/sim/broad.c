@@ -10,8 +10,9 @@
 #include "base/status.h"
 #include "sim/bodies.h"
 #include "sim/population.h"
+#include "sim/slim.h"
 
-enum { LEVELS = 24, CELLS_LEAST = 4 };
+enum { LEVELS = 24, CELLS_LEAST = 4, SLACK = 16 };
 enum { BODIES_TO_SHARE = 512 };  // that are worth more than one thread
 
 static const double SKIN = 0.2;       // of the mean bounding radius; flat from 0.1 to 0.4
@@ -39,10 +40,6 @@ typedef struct finding {
     bool failed;
 } finding;
 
-typedef struct pair_limits {
-    double a, b;
-} pair_limits;
-
 /// Kept from one search to the next, as fresh memory would cost more than the search.
 struct dem_search {
     dem_world *w;
@@ -53,16 +50,14 @@ struct dem_search {
     float *x, *y, *z, *r;  // sorted by level and cell
     uint32_t *id, *cell;
     uint8_t *level_of;
+    bool slim;  // some shapes are
     int32_t *moved;
     finding *findings;  // [parts]
     int parts;
-    near_pair *near;              // of all parts: the only one's, or joined
+    near_pair *near;  // of all parts: the only one's, or joined
     near_pair *joined, *sorted;
     size_t near_count, joined_capacity, sorted_capacity;
-    near_pair *taken;  // by their first bodies
-    pair_limits *limits;
-    size_t limit_capacity;
-    dem_pairs spare;  // to be filled while the old ones are still read
+    uint32_t *first;  // [bodies + 1] of the pairs to come
 };
 typedef struct dem_search search;
 
@@ -158,6 +153,8 @@ dem_status dem_search_create(dem_world *w, dem_error *error)
         return dem_fail_memory(error);
     size_t n = w->bodies.count, room = n + 2 * DEM_WIDTH_FLOAT + 32;
     s->w = w;
+    for (size_t i = 0; i < w->templates.count; i++)
+        s->slim |= w->templates.items[i].slim;
     s->x = dem_alloc_zero(room, sizeof *s->x);
     s->y = dem_alloc_zero(room, sizeof *s->y);
     s->z = dem_alloc_zero(room, sizeof *s->z);
@@ -170,8 +167,9 @@ dem_status dem_search_create(dem_world *w, dem_error *error)
     for (int i = 0; found && i < s->parts; i++)
         found = (s->findings[i].found = dem_alloc(2 * room, sizeof *s->findings[i].found)) != NULL;
     s->level_of = dem_alloc(n + 1, sizeof *s->level_of);
-    s->moved = dem_alloc_zero(3 * n + 3, sizeof *s->moved);
-    bool good = s->x && s->y && s->z && s->r && s->id && s->cell && found && s->level_of && s->moved;
+    s->moved = dem_alloc_zero(w->periodic ? 3 * n + 3 : 0, sizeof *s->moved);
+    s->first = dem_alloc_zero(n + 1, sizeof *s->first);
+    bool good = s->first && s->x && s->y && s->z && s->r && s->id && s->cell && found && s->level_of && s->moved;
     return good ? DEM_OK : dem_fail_memory(error);
 }
 
@@ -183,13 +181,12 @@ void dem_search_destroy(dem_search *s)
         free(s->findings[i].found);
         free(s->findings[i].near);
     }
-    void *all[] = {s->x,        s->y,        s->z,     s->r,    s->id,     s->cell,
-                   s->findings, s->level_of, s->moved, s->joined, s->sorted, s->limits};
+    void *all[] = {s->x,        s->y,        s->z,     s->r,      s->id,     s->cell,
+                   s->findings, s->level_of, s->moved, s->joined, s->sorted, s->first};
     for (size_t i = 0; i < sizeof all / sizeof *all; i++)
         free(all[i]);
     for (int i = 0; i < LEVELS; i++)
         free(s->levels[i].start);
-    dem_pairs_release(&s->spare);
     free(s);
 }
 
@@ -317,10 +314,24 @@ static bool make_room(void *array, size_t *capacity, size_t count, size_t size)
     return *p != NULL;
 }
 
+static bool boxes_apart(const search *s, uint32_t a, uint32_t b, uint32_t image)
+{
+    const dem_world *w = s->w;
+    const dem_template *items = w->templates.items;
+    if (!items[w->bodies.shape[a]].slim && !items[w->bodies.shape[b]].slim)
+        return false;
+    dem_vec3 offset = v3_sub(body_position(&w->bodies, b), body_position(&w->bodies, a));
+    if (w->periodic)
+        offset = v3_add(offset, v3(w->shifts[4 * image], w->shifts[4 * image + 1], w->shifts[4 * image + 2]));
+    return dem_slim_apart(w, a, b, offset, w->skin + w->ahead);
+}
+
 static bool add_near(const search *s, finding *f, uint32_t a, uint32_t b, uint32_t image)
 {
     if (hold_whole(body_hold(&s->w->bodies, a)) && hold_whole(body_hold(&s->w->bodies, b)))
         return true;  // contacts can do nothing to either
+    if (s->slim && boxes_apart(s, a, b, image))
+        return true;
     if (!dem_grow(&f->near, &f->capacity, f->count, sizeof *f->near))
         return false;
     f->near[f->count++] = (near_pair){a, b, image};
@@ -451,7 +462,7 @@ static void sort_partners(near_pair *near, size_t count)
 }
 
 // by a; first[a] is where those of a begin
-static dem_status sort_near(search *s, uint32_t *first, near_pair **sorted, dem_error *error)
+static dem_status sort_near(search *s, uint32_t *first, const near_pair **sorted, dem_error *error)
 {
     near_pair *near = s->near;
     size_t n = s->w->bodies.count;
@@ -469,6 +480,8 @@ static dem_status sort_near(search *s, uint32_t *first, near_pair **sorted, dem_
         first[0] = 0;
         near = s->sorted;
     }
+    for (size_t i = 0; i < n; i++)
+        sort_partners(near + first[i], first[i + 1] - first[i]);
     *sorted = near;
     return DEM_OK;
 }
@@ -488,47 +501,30 @@ static uint32_t moved_image(const search *s, const dem_pair *p)
     return image_row(image[0], image[1], image[2]);
 }
 
-// room for as many pairs as asked for, without their links, on the memory that is there
-static bool take_pairs(dem_pairs *pairs, size_t bodies, size_t count)
+static bool make_links(dem_pairs *pairs, size_t bodies, size_t capacity)
 {
-    if (!pairs->first) {
-        pairs->first = dem_alloc(bodies + 1, sizeof *pairs->first);
-        pairs->adjacency_first = dem_alloc(bodies + 1, sizeof *pairs->adjacency_first);
-    }
-    if (count > pairs->capacity || !pairs->items) {
-        free(pairs->items);
-        pairs->capacity = count + count / 8;
-        pairs->items = dem_alloc(pairs->capacity, sizeof *pairs->items);
-    }
-    bool good = pairs->first && pairs->adjacency_first && pairs->items;
-    pairs->count = good ? count : 0;
-    pairs->capacity = good ? pairs->capacity : 0;
-    return good;
+    *pairs = (dem_pairs){.capacity = capacity,
+                         .items = dem_alloc(capacity, sizeof *pairs->items),
+                         .first = dem_alloc(bodies + 1, sizeof *pairs->first),
+                         .adjacency_first = dem_alloc(bodies + 1, sizeof *pairs->adjacency_first),
+                         .adjacency = dem_alloc(2 * capacity, sizeof *pairs->adjacency),
+                         .adjacency_limit = dem_alloc(2 * capacity, sizeof *pairs->adjacency_limit),
+                         .fresh = dem_alloc(capacity, sizeof *pairs->fresh)};
+    return pairs->items && pairs->first && pairs->adjacency_first && pairs->adjacency && pairs->adjacency_limit &&
+           pairs->fresh;
 }
 
-// the links of the old pairs, which are not needed any more, serve the new ones
-static bool take_links(dem_pairs *pairs, dem_pairs *old, size_t bodies)
+// Whether the new list may grow from the begin of the memory while the old one is read, which is moved to its end: no
+// new pair comes to stand where an old one has not been read.
+static bool in_place(const search *s, const dem_pairs *pairs)
 {
-    pairs->adjacency = old->adjacency;
-    pairs->adjacency_limit = old->adjacency_limit;
-    pairs->fresh = old->fresh;
-    old->adjacency = old->fresh = NULL;
-    old->adjacency_limit = NULL;
-    if (old->capacity < pairs->count || !pairs->fresh) {
-        free(pairs->adjacency);
-        free(pairs->adjacency_limit);
-        free(pairs->fresh);
-        pairs->adjacency = dem_alloc(2 * pairs->capacity, sizeof *pairs->adjacency);
-        pairs->adjacency_limit = dem_alloc(2 * pairs->capacity, sizeof *pairs->adjacency_limit);
-        pairs->fresh = dem_alloc(pairs->capacity, sizeof *pairs->fresh);
-    } else
-        pairs->capacity = pairs->capacity < old->capacity ? pairs->capacity : old->capacity;
-    bool good = pairs->adjacency && pairs->adjacency_limit && pairs->fresh;
-    if (good) {
-        memset(pairs->adjacency_first, 0, (bodies + 1) * sizeof *pairs->adjacency_first);
-        memset(pairs->fresh, 0, pairs->count * sizeof *pairs->fresh);
-    }
-    return good;
+    if (s->near_count > pairs->capacity || !pairs->first)
+        return false;
+    size_t gap = pairs->capacity - pairs->count;
+    for (size_t a = 0; a < s->w->bodies.count; a++)
+        if (s->first[a + 1] > gap + pairs->first[a])
+            return false;
+    return true;
 }
 
 void dem_pairs_release(dem_pairs *pairs)
@@ -541,49 +537,62 @@ void dem_pairs_release(dem_pairs *pairs)
     free(pairs->fresh);
 }
 
-// what is known of the pairs that stay; the segments of those that go with contacts, or are seen elsewhere, are dirty
-static void merge_part(void *user, int part)
+// Limits of the i-th pair until its links are made: in memory of the links.
+static void park(dem_pairs *pairs, size_t i, const double limits[2])
 {
-    search *s = user;
-    if (part >= s->parts)
-        return;
-    near_pair *near = s->taken;
-    const dem_pairs *old = &s->w->pairs;
-    dem_pairs *pairs = &s->spare;
-    pair_limits *limits = s->limits;
-    for (size_t a = part_begin(s, part); a < part_begin(s, part + 1); a++) {
-        sort_partners(near + pairs->first[a], pairs->first[a + 1] - pairs->first[a]);
-        size_t o = old->count ? old->first[a] : 0, o_end = old->count ? old->first[a + 1] : 0;
+    memcpy(&pairs->adjacency[2 * i], &limits[0], sizeof *limits);
+    memcpy(&pairs->items[i].adjacent_a, &limits[1], sizeof *limits);
+}
+static void unpark(const dem_pairs *pairs, size_t i, double limits[2])
+{
+    memcpy(&limits[0], &pairs->adjacency[2 * i], sizeof *limits);
+    memcpy(&limits[1], &pairs->items[i].adjacent_a, sizeof *limits);
+}
+_Static_assert(offsetof(dem_pair, adjacent_b) == offsetof(dem_pair, adjacent_a) + sizeof(uint32_t),
+               "a limit is parked in both");
+
+// what is known of the pairs that stay; the segments of those that go with contacts, or are seen elsewhere, are dirty
+static void merge_pairs(search *s, const near_pair *near, const dem_pair *items, const double *old_limits,
+                        dem_pairs *pairs)
+{
+    const uint32_t *old = s->w->pairs.count ? s->w->pairs.first : NULL;
+    for (size_t a = 0; a < s->w->bodies.count; a++) {
+        size_t o = old ? old[a] : 0, o_end = old ? old[a + 1] : 0;
         bool *dirty = &s->w->contacts.segments[a / DEM_SEGMENT].dirty;
-        for (size_t i = pairs->first[a]; i < pairs->first[a + 1]; i++) {
+        for (size_t i = s->first[a]; i < s->first[a + 1]; i++) {
             const near_pair *n = &near[i];
-            pairs->items[i] = (dem_pair){.a = n->a, .b = n->b, .normal = {9}, .image = n->image};
-            limits[i] = (pair_limits){-1, -1};
+            dem_pair pair = {.a = n->a, .b = n->b, .normal = {9}, .image = n->image};
+            double limits[2] = {-1, -1};
             for (; o < o_end; o++) {
-                const dem_pair *p = &old->items[o];
+                const dem_pair *p = &items[o];
                 uint32_t image = moved_image(s, p);
                 if (p->b > n->b || (p->b == n->b && image > n->image))
                     break;
                 if (p->b == n->b && image == n->image) {
-                    pairs->items[i] = *p;
-                    pairs->items[i].image = image;
+                    pair = *p;
+                    pair.image = image;
                     *dirty |= p->count && image != p->image;
-                    limits[i] = (pair_limits){old->adjacency_limit[p->adjacent_a], old->adjacency_limit[p->adjacent_b]};
+                    limits[0] = old_limits[p->adjacent_a];
+                    limits[1] = old_limits[p->adjacent_b];
                     o++;
                     break;
                 }
                 *dirty |= p->count > 0;
             }
+            pairs->items[i] = pair;
+            park(pairs, i, limits);
         }
         for (; o < o_end; o++)
-            *dirty |= old->items[o].count > 0;
+            *dirty |= items[o].count > 0;
     }
 }
 
-static void link_adjacency(const search *s, dem_pairs *pairs, const pair_limits *limits)
+static void link_adjacency(const search *s, dem_pairs *pairs)
 {
     size_t n = s->w->bodies.count;
     uint32_t *first = pairs->adjacency_first;
+    memset(first, 0, (n + 1) * sizeof *first);
+    memset(pairs->fresh, 0, pairs->count * sizeof *pairs->fresh);
     for (size_t i = 0; i < pairs->count; i++) {
         first[pairs->items[i].a + 1]++;
         first[pairs->items[i].b + 1]++;
@@ -592,32 +601,42 @@ static void link_adjacency(const search *s, dem_pairs *pairs, const pair_limits 
         first[i + 1] += first[i];
     for (size_t i = 0; i < pairs->count; i++) {
         dem_pair *p = &pairs->items[i];
+        double limits[2];
+        unpark(pairs, i, limits);
         p->adjacent_a = first[p->a]++;
         p->adjacent_b = first[p->b]++;
-        pairs->adjacency[p->adjacent_a] = pairs->adjacency[p->adjacent_b] = (uint32_t)i;
-        pairs->adjacency_limit[p->adjacent_a] = limits[i].a;
-        pairs->adjacency_limit[p->adjacent_b] = limits[i].b;
+        pairs->adjacency_limit[p->adjacent_a] = limits[0];
+        pairs->adjacency_limit[p->adjacent_b] = limits[1];
     }
+    for (size_t i = 0; i < pairs->count; i++)
+        pairs->adjacency[pairs->items[i].adjacent_a] = pairs->adjacency[pairs->items[i].adjacent_b] = (uint32_t)i;
     memmove(first + 1, first, n * sizeof *first);
     first[0] = 0;
 }
 
+// in the memory of the old list where it will do
 static dem_status replace_pairs(search *s, dem_error *error)
 {
-    dem_pairs *pairs = &s->spare;
-    if (!make_room(&s->limits, &s->limit_capacity, s->near_count, sizeof *s->limits) ||
-        !take_pairs(pairs, s->w->bodies.count, s->near_count))
-        return dem_fail_memory(error);
-    DEM_TRY(sort_near(s, pairs->first, &s->taken, error));
-    in_parts(s, merge_part);
-    if (!take_links(pairs, &s->w->pairs, s->w->bodies.count)) {
-        pairs->count = 0;
+    dem_pairs old = s->w->pairs, pairs = old;
+    const near_pair *near = NULL;
+    size_t n = s->w->bodies.count, at = 0;
+    DEM_TRY(sort_near(s, s->first, &near, error));
+    bool same = in_place(s, &old);
+    if (!same && !make_links(&pairs, n, s->near_count + s->near_count / SLACK + 1)) {
+        dem_pairs_release(&pairs);
         return dem_fail_memory(error);
     }
-    link_adjacency(s, pairs, s->limits);
-    dem_pairs old = s->w->pairs;
-    s->w->pairs = *pairs;
-    *pairs = old;
+    if (same) {
+        at = old.capacity - old.count;
+        memmove(old.items + at, old.items, old.count * sizeof *old.items);
+    }
+    pairs.count = s->near_count;
+    merge_pairs(s, near, old.items ? old.items + at : NULL, old.adjacency_limit, &pairs);
+    link_adjacency(s, &pairs);
+    memcpy(pairs.first, s->first, (n + 1) * sizeof *pairs.first);
+    if (!same)
+        dem_pairs_release(&old);
+    s->w->pairs = pairs;
     return DEM_OK;
 }
 
@@ -666,12 +685,13 @@ static double moved_most(const dem_world *w, dem_vec3 *middle)
     return sqrt(most);
 }
 
-// two bodies that were not near have come nearer by no more than both have moved about the middle
+// Two bodies that were not near have come nearer by no more than both have moved about the middle; rods and plates come
+// near by turning, too.
 bool dem_broad_extend(dem_world *w)
 {
     dem_bodies *b = &w->bodies;
     dem_vec3 middle;
-    if (!(moved_most(w, &middle) <= (1 - SKIN_LEFT) * w->skin / 2))
+    if (w->search->slim || !(moved_most(w, &middle) <= (1 - SKIN_LEFT) * w->skin / 2))
         return false;
     for (size_t i = 0; i < b->count; i++)
         if (!body_absent(b, i)) {

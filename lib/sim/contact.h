@@ -12,19 +12,26 @@
 #include "sim/user_forces.h"
 #endif
 
-DEM_INLINE void load_law(const dem_features f, const dem_rows *rows, const uint32_t *row, wide law[LAW_SLOTS])
+typedef struct contact_numbers {
+    wide law[LAW_SLOTS];
+    law_step step;
+} contact_numbers;
+
+/// `row`: of the laws of a mixed scene.
+DEM_INLINE contact_numbers load_law(const dem_features f, const dem_rows *rows, const dem_contact_job *job,
+                                    const uint32_t *row)
 {
     const bool more = turns(f) || adheres(f) || f.roll_bound || f.jkr || f.bonded;
-    if (f.mixed) {
-        for (int k = 0; k < (more ? LAW_SLOTS : LAW_MORE); k += 8)
-            rows_load(rows->laws + k, LAW_SLOTS, row, law + k);
-        return;
-    }
+    contact_numbers n;
+    for (int k = 0; f.mixed && k < (more ? LAW_SLOTS : LAW_MORE); k += 8)
+        rows_load(rows->laws + k, LAW_SLOTS, row, n.law + k);
     // in two short loops, which compilers unroll, so that what is not needed is not even loaded
-    for (int k = 0; k < LAW_MORE; k++)
-        law[k] = wide_all(rows->laws[k]);
-    for (int k = LAW_MORE; more && k < LAW_SLOTS; k++)
-        law[k] = wide_all(rows->laws[k]);
+    for (int k = 0; !f.mixed && k < LAW_MORE; k++)
+        n.law[k] = wide_all(rows->laws[k]);
+    for (int k = LAW_MORE; !f.mixed && more && k < LAW_SLOTS; k++)
+        n.law[k] = wide_all(rows->laws[k]);
+    n.step = law_step_of(f, n.law, job->last_step, job->next_step);
+    return n;
 }
 
 // energy dissipated since the last step [J]
@@ -175,115 +182,221 @@ DEM_INLINE void contact_spring(const dem_contact_job *job, size_t at, size_t g, 
     put3(batch, AT_SPRING, g, spring_turn(load3(job->columns.spring, at), get3(batch, AT_NORMAL, g), turn));
 }
 
-DEM_INLINE void contact_law(const dem_features f, const dem_rows *rows, const dem_contact_job *job, size_t at, size_t g,
-                            contact_batch *batch, const bool wall, const bool record)
+/// A contact between the two halves of its law.
+typedef struct contact_state {
+    contact_numbers numbers;
+    normal_law normal;
+    contact_mass mass;
+    friction_trial trial;
+    wide3 n;
+    wide overlap, reduced, vn, weight;
+    wide lost, broken;  // beside what friction dissipates [J]
+    wide_mask on;       // the surfaces act on each other
+} contact_state;
+
+/// What the normal force and the surfaces of JKR have dissipated since the last step [J].
+DEM_INLINE wide normal_loss(const dem_features f, const dem_contact_columns *c, size_t at, const contact_state *s,
+                            wide held, const bool record)
+{
+    wide lost = wide_all(0);
+    if (f.ledger && damped(f)) {
+        wide now = wide_or_zero(s->on, s->normal.elastic - s->normal.force), was = wide_load(c->loss + at);
+        lost = wide_all(0.5) * (was + now) * (s->vn * s->numbers.step.step);
+        if (!record)
+            wide_store(c->loss + at, now);
+    }
+    if (f.jkr) {
+        // what the jump together sets free, and what is held where they part, is lost
+        wide was = wide_load(c->attached + at), now = wide_or_zero(s->on, wide_all(1));
+        wide jumps = wide_or_zero(wide_less(was, now), wide_all(0) - s->normal.energy);
+        lost = lost + (jumps + wide_or_zero(wide_less(now, was), held));
+        if (!record)
+            wide_store(c->attached + at, now);
+    }
+    return lost;
+}
+
+/// The first half: the normal force, and friction without its cap. `given`: of a scene with one law.
+DEM_INLINE contact_state contact_press(const dem_features f, const dem_rows *rows, const dem_contact_job *job,
+                                       const contact_numbers *given, size_t at, size_t g, contact_batch *batch,
+                                       const bool wall, const bool record)
 {
     const dem_contact_columns *c = &job->columns;
-    wide law[LAW_SLOTS], zero = wide_all(0), reduced = zero;
-    load_law(f, rows, f.mixed ? c->law + at : NULL, law);
-    wide overlap = wide_load(batch->at[AT_OVERLAP] + g);
-    wide_mask on = wide_less(zero, overlap);
-    wide held = zero, gone = overlap;
+    contact_state s = {.numbers = f.mixed ? load_law(f, rows, job, c->law + at) : *given};
+    wide *const law = s.numbers.law, zero = wide_all(0), step = s.numbers.step.step;
+    wide overlap = s.overlap = wide_load(batch->at[AT_OVERLAP] + g);
+    wide held = zero, gone = overlap, area = zero;
+    s.on = wide_less(zero, overlap);
+    s.weight = f.weighted ? wide_load(c->weight + at) : wide_all(1);
+    s.reduced = s.broken = zero;
     if (needs_reduced(f))
-        reduced = wide_load(batch->at[AT_REDUCED] + g);
+        s.reduced = wide_load(batch->at[AT_REDUCED] + g);
     jkr_pair surfaces = {zero, zero, zero, zero, zero};
     if (f.jkr) {
-        surfaces = jkr_surfaces(law[LAW_JKR], wide_all(0.5) * law[LAW_HERTZ], reduced);
-        on = jkr_holds(&surfaces, overlap, wide_load(c->attached + at), &gone, &held);
+        surfaces = jkr_surfaces(law[LAW_JKR], wide_all(0.5) * law[LAW_HERTZ], s.reduced);
+        s.on = jkr_holds(&surfaces, overlap, wide_load(c->attached + at), &gone, &held);
     }
-    wide3 n = get3(batch, AT_NORMAL, g), v = get3(batch, AT_VELOCITY, g);
-    // at the start nothing has passed; the step to come is as good
-    wide per_step = wide_all(1 / (job->last_step > 0 ? job->last_step : job->next_step));
-    wide vn = dot3(v, n), area = zero, step = wide_all(job->last_step);
-    contact_mass mass = {zero, zero, zero};
+    wide3 v = get3(batch, AT_VELOCITY, g);
+    s.n = get3(batch, AT_NORMAL, g);
+    s.vn = dot3(v, s.n);
+    s.mass = (contact_mass){zero, zero, zero};
     if (damped(f))
-        mass = get_mass(f, batch, g);
+        s.mass = get_mass(f, batch, g);
     if (f.young)
         area = wide_load(batch->at[AT_AREA] + g);
-    normal_law normal = normal_elastic(f, law, &surfaces, overlap, reduced, area);
-    bond_law bonds = {on, on, zero, zero};
+    s.normal = normal_elastic(f, law, &surfaces, overlap, s.reduced, area);
+    wide_mask holds = s.on;
     if (f.bonded) {
-        bonds = bond(law, &normal, wide_load(c->bond + at), reduced, overlap, vn, get3(batch, AT_SPRING, g),
-                     against3(v, vn, n), step, !(job->last_step > 0));
-        on = wide_either(on, bonds.on);
+        bond_law bonds = bond(law, &s.normal, wide_load(c->bond + at), s.reduced, overlap, s.vn,
+                              get3(batch, AT_SPRING, g), against3(v, s.vn, s.n), step, !(job->last_step > 0));
+        holds = bonds.holds;
+        s.on = wide_either(s.on, bonds.on);
+        s.broken = bonds.released;
         // neither a tail nor a beginning
-        law[LAW_FLOOR] = wide_select(bonds.holds, wide_all(-INFINITY), law[LAW_FLOOR]);
-        gone = wide_select(bonds.holds, wide_all(1e100), gone);
+        law[LAW_FLOOR] = wide_select(holds, wide_all(-INFINITY), law[LAW_FLOOR]);
+        gone = wide_select(holds, wide_all(1e100), gone);
         if (!record)
             wide_store(c->bond + at, bonds.state);
     }
-    normal_damp(f, law, &normal, &mass, gone, vn, step, per_step);
+    normal_damp(f, law, &s.numbers.step, &s.normal, &s.mass, gone, s.vn);
+    s.lost = normal_loss(f, c, at, &s, held, record);
+    s.trial.stiffness = s.trial.old_stiffness = s.trial.damping = zero;
+    if (f.friction)
+        s.trial = friction_try(f, law, &s.numbers.step, &s.normal, s.reduced, overlap, s.vn, &s.mass,
+                               get3(batch, AT_SPRING, g), against3(v, s.vn, s.n), holds);
+    if (record)
+        return s;
+    if (f.roll_bound) {
+        wide bound = law[LAW_ROLL_BOUND] * wide_load(batch->at[AT_RADIUS] + g) * normal_grip(f, &s.normal) * s.weight;
+        wide_store(batch->at[AT_BOUND] + g, wide_or_zero(s.on, bound * wide_all(job->kick)));
+    }
+    if (f.watch) {
+        wide strain = contact_strain(f, &s.normal, s.trial.stiffness, s.trial.damping, wide_all(job->next_step), wall);
+        wide_store(batch->at[AT_STRAIN] + g, wide_or_zero(s.on, strain));
+    }
+    if (wall && f.reaction) {
+        // what a wall that moves by d in a step meets, over d: the spring and the dashpot
+        wide hardness = wide_fma(s.normal.damping, s.numbers.step.per_step, s.normal.stiffness);
+        wide_store(c->hardness + at, wide_or_zero(s.on, hardness * s.weight));
+    }
+    return s;
+}
 
-    wide weight = f.weighted ? wide_load(c->weight + at) : wide_all(1);
+/// Whether the halves of the law are loops of their own, with little to hand on: a loop of both is so long that the
+/// processor, waiting for results of one turn, does not reach the next.
+DEM_INLINE bool in_halves(const dem_features f, const bool record)
+{
+    const bool more = f.weighted || f.bonded || f.jkr || adheres(f) || turns(f) || f.user;
+    return !record && f.friction && !f.mixed && !more;
+}
+
+DEM_INLINE void put_state(const dem_features f, contact_batch *batch, size_t g, const contact_state *s)
+{
+    put3(batch, AT_VELOCITY, g, s->trial.slip);
+    put3(batch, AT_TRIAL, g, s->trial.force);
+    wide_store(batch->at[AT_PART] + g, s->trial.part);
+    wide_store(batch->at[AT_NET] + g, s->normal.force);
+    if (f.slide_damping)
+        wide_store(batch->at[AT_CAP] + g, s->trial.cap2);
+    if (f.slide_damping && f.rate)
+        wide_store(batch->at[AT_DAMPING] + g, s->trial.damping);
+    if (f.ledger)
+        wide_store(batch->at[AT_LOST] + g, s->lost);
+    if (f.mindlin)
+        put3(batch, AT_STRETCHED, g, s->trial.stretched);
+    if (f.mindlin)
+        wide_store(batch->at[AT_OLD_SLIDE] + g, s->trial.old_stiffness);
+    if (!alike(f))
+        wide_store(batch->at[AT_SLIDE] + g, s->trial.stiffness);
+}
+
+DEM_INLINE contact_state get_state(const dem_features f, const contact_numbers *given, const contact_batch *batch,
+                                   size_t g)
+{
+    wide zero = wide_all(0);
+    const wide *law = given->law;
+    contact_state s = {.numbers = *given, .n = get3(batch, AT_NORMAL, g), .weight = wide_all(1)};
+    s.on = wide_less(zero, wide_load(batch->at[AT_OVERLAP] + g));
+    s.normal.force = wide_load(batch->at[AT_NET] + g);
+    friction_trial *t = &s.trial;
+    t->slip = get3(batch, AT_VELOCITY, g);
+    t->start = get3(batch, AT_SPRING, g);
+    t->force = get3(batch, AT_TRIAL, g);
+    t->part = wide_load(batch->at[AT_PART] + g);
+    if (f.slide_damping)
+        t->cap2 = wide_load(batch->at[AT_CAP] + g);
+    if (f.slide_damping && f.rate)
+        t->damping = wide_load(batch->at[AT_DAMPING] + g);
+    if (f.ledger)
+        s.lost = wide_load(batch->at[AT_LOST] + g);
+    t->stretched = f.mindlin ? get3(batch, AT_STRETCHED, g) : along3(t->start, given->step.step, t->slip);
+    if (f.mindlin)
+        t->old_stiffness = wide_load(batch->at[AT_OLD_SLIDE] + g);
+    if (alike(f))
+        t->stiffness = law[LAW_SLIDE_STIFFNESS] + law[LAW_SLIDE_RATIO] * law[LAW_STIFFNESS];
+    else
+        t->stiffness = wide_load(batch->at[AT_SLIDE] + g);
+    return s;
+}
+
+/// The second half: what the cap of friction leaves, all that is measured by it, and the impulse.
+DEM_INLINE void contact_hold(const dem_features f, const dem_contact_job *job, const contact_state *s, size_t at,
+                             size_t g, contact_batch *batch, const bool wall, const bool record)
+{
+    const dem_contact_columns *c = &job->columns;
+    const wide *law = s->numbers.law, zero = wide_all(0), step = s->numbers.step.step;
     wide3 force = {zero, zero, zero}, spring = force;
-    wide slide = zero;
-    wide slide_before = zero, slide_damping = zero;
-    contact_loss loss = {zero, zero, bonds.released};
+    contact_loss loss = {zero, zero, s->broken};
     if (f.friction) {
-        spring = get3(batch, AT_SPRING, g);
-        wide3 slip = against3(v, vn, n);
-        friction_law t = friction(f, law, &normal, reduced, overlap, vn, &mass, spring, slip, step, on, bonds.holds);
+        friction_law t = friction(f, law, &s->numbers.step, &s->trial, s->on);
         force = t.force;
         spring = t.spring;
-        slide = t.stiffness;
-        slide_before = t.old_stiffness;
-        slide_damping = t.damping;
         if (!record)
             store3(c->spring, at, spring);
         loss.friction = t.lost;
         if (f.ledger && f.slide_damping) {
             wide3 was = load3(c->dash, at);
             wide3 both = {was.x + t.dash.x, was.y + t.dash.y, was.z + t.dash.z};
-            loss.viscous = wide_all(0.5) * step * dot3(both, slip);
+            loss.viscous = wide_all(0.5) * step * dot3(both, s->trial.slip);
             if (!record)
                 store3(c->dash, at, t.dash);
         }
     }
-    wide net = normal.force, pulled = zero;
+    wide net = s->normal.force, pulled = zero;
     if (adheres(f)) {
         lens shared = {zero, zero};
         if (f.sjkr)
             shared = (lens){wide_load(batch->at[AT_AREA_SHARED] + g), wide_load(batch->at[AT_VOLUME_SHARED] + g)};
-        adhesion_law pull = adhesion(f, law, shared, reduced, overlap);
+        adhesion_law pull = adhesion(f, law, shared, s->reduced, s->overlap);
         net = net - pull.force;
         pulled = pull.energy;
     }
-    force = or_zero3(on, against3(force, net, n));
-    if (f.ledger && damped(f)) {
-        wide now = wide_or_zero(on, normal.elastic - normal.force), was = wide_load(c->loss + at);
-        loss.viscous = loss.viscous + wide_all(0.5) * (was + now) * (vn * step);
-        if (!record)
-            wide_store(c->loss + at, now);
-    }
-    if (f.jkr) {
-        // what the jump together sets free, and what is held where they part, is lost
-        wide was = wide_load(c->attached + at), now = wide_or_zero(on, wide_all(1));
-        wide jumps = wide_or_zero(wide_less(was, now), zero - normal.energy);
-        loss.viscous = loss.viscous + (jumps + wide_or_zero(wide_less(now, was), held));
-        if (!record)
-            wide_store(c->attached + at, now);
-    }
+    force = or_zero3(s->on, against3(force, net, s->n));
+    if (f.ledger && (damped(f) || f.jkr))
+        loss.viscous = loss.viscous + s->lost;
     if (f.weighted) {
-        force = scale3(force, weight);
-        loss = (contact_loss){loss.friction * weight, loss.viscous * weight, loss.broken * weight};
+        force = scale3(force, s->weight);
+        loss = (contact_loss){loss.friction * s->weight, loss.viscous * s->weight, loss.broken * s->weight};
     }
     dem_contact_record *records = record ? job->records + (at - g - job->begin) : NULL;
     if (record)
-        put_records(f, batch, g, &normal, net, pulled, &force, &spring, slide, mass.mass, weight, on, records);
+        put_records(f, batch, g, &s->normal, net, pulled, &force, &spring, s->trial.stiffness, s->mass.mass, s->weight,
+                    s->on, records);
     wide power = zero;  // of a moving wall
     if (turns(f)) {
-        wide before = wide_fma(vn, step, overlap), patch = normal.radius;
+        wide before = wide_fma(s->vn, step, s->overlap), patch = s->normal.radius;
         if (!f.hertz)
-            patch = wide_sqrt(reduced * wide_max(overlap, zero));
-        turning_state s = {.n = n,
-                           .reduced = reduced,
-                           .patch = patch,
-                           .patch_before = radius_before(f, &normal, reduced, overlap, before),
-                           .step = step,
-                           .slide = slide,
-                           .slide_before = slide_before,
-                           .slide_damping = slide_damping};
-        contact_moment m = contact_turning(f, job, at, g, batch, law, &normal, &s, weight, on, wall, record);
+            patch = wide_sqrt(s->reduced * wide_max(s->overlap, zero));
+        turning_state turning = {.n = s->n,
+                                 .reduced = s->reduced,
+                                 .patch = patch,
+                                 .patch_before = radius_before(f, &s->normal, s->reduced, s->overlap, before),
+                                 .step = step,
+                                 .slide = s->trial.stiffness,
+                                 .slide_before = s->trial.old_stiffness,
+                                 .slide_damping = s->trial.damping};
+        contact_moment m =
+            contact_turning(f, job, at, g, batch, law, &s->normal, &turning, s->weight, s->on, wall, record);
         loss.friction = loss.friction + m.lost;
         power = m.power;
     }
@@ -299,20 +412,8 @@ DEM_INLINE void contact_law(const dem_features f, const dem_rows *rows, const de
         tally_add(job->tally->viscous, g, loss.viscous);
     if (f.ledger && f.bonded)
         tally_add(job->tally->broken, g, loss.broken);
-    if (f.roll_bound) {
-        wide bound = law[LAW_ROLL_BOUND] * wide_load(batch->at[AT_RADIUS] + g) * normal_grip(f, &normal) * weight;
-        wide_store(batch->at[AT_BOUND] + g, wide_or_zero(on, bound * wide_all(job->kick)));
-    }
-    if (f.watch) {
-        wide strain = contact_strain(f, &normal, slide, slide_damping, wide_all(job->next_step), wall);
-        wide_store(batch->at[AT_STRAIN] + g, wide_or_zero(on, strain));
-    }
-    if (wall && f.reaction) {
+    if (wall && f.reaction)
         store3(c->reaction, at, force);
-        // what a wall that moves by d in a step meets, over d: the spring and the dashpot
-        wide hardness = wide_fma(normal.damping, per_step, normal.stiffness);
-        wide_store(c->hardness + at, wide_or_zero(on, hardness * weight));
-    }
     force = scale3(force, wide_all(job->kick));
     put3(batch, AT_FORCE, g, force);
     if (wall && f.moving && f.ledger) {
@@ -320,6 +421,24 @@ DEM_INLINE void contact_law(const dem_features f, const dem_rows *rows, const de
         if (turns(f))
             work = wide_fma(wide_all(job->kick), power, work);
         tally_add(job->tally->work, g, work);
+    }
+}
+
+/// The law of `count` contacts from the place `from`.
+DEM_INLINE void contact_laws(const dem_features f, const dem_rows *rows, const dem_contact_job *job,
+                             const contact_numbers *numbers, size_t from, size_t count, contact_batch *batch,
+                             const bool wall, const bool record)
+{
+    for (size_t g = 0; g < count; g += DEM_WIDTH) {
+        contact_state s = contact_press(f, rows, job, numbers, from + g, g, batch, wall, record);
+        if (in_halves(f, record))
+            put_state(f, batch, g, &s);
+        else
+            contact_hold(f, job, &s, from + g, g, batch, wall, record);
+    }
+    for (size_t g = 0; g < count && in_halves(f, record); g += DEM_WIDTH) {
+        contact_state s = get_state(f, numbers, batch, g);
+        contact_hold(f, job, &s, from + g, g, batch, wall, record);
     }
 }
 
@@ -370,12 +489,21 @@ DEM_INLINE void pair_sides(const dem_features f, const dem_rows *rows, const dem
         pair_mass(f, rows, c, from + g, g, batch);
 }
 
-DEM_INLINE void contact_batches(const dem_features f, const dem_rows *rows, const dem_contact_job *job, const bool wall,
-                                const dem_wall_form form, const bool record)
+DEM_INLINE void contact_batches(const dem_features f, const dem_rows *given_rows, const dem_contact_job *given,
+                                const bool wall, const dem_wall_form form, const bool record)
 {
+    // copies, which no column can lie over, so that they and what follows from them are not read again at each turn
+    const dem_rows own_rows = *given_rows, *rows = &own_rows;
+    dem_tally tally = *given->tally;
+    dem_contact_job own = *given;
+    own.tally = &tally;
+    const dem_contact_job *job = &own;
     const dem_contact_columns *c = &job->columns;
+    contact_numbers numbers;
+    if (!f.mixed)
+        numbers = load_law(f, rows, job, NULL);
     contact_batch batch;
-    double largest = job->tally->overlap_ratio;
+    double largest = tally.overlap_ratio;
     for (size_t from = job->begin; from < job->end; from += BATCH) {
         size_t count = job->end - from < BATCH ? job->end - from : BATCH;
         if (wall)
@@ -386,8 +514,7 @@ DEM_INLINE void contact_batches(const dem_features f, const dem_rows *rows, cons
             contact_spring(job, from + g, g, &batch);
         // asked outside of the loop: as a part of its condition it costs every kernel one in a hundred instructions
         if (!f.user || f.linear || f.hertz)
-            for (size_t g = 0; g < count; g += DEM_WIDTH)
-                contact_law(f, rows, job, from + g, g, &batch, wall, record);
+            contact_laws(f, rows, job, &numbers, from, count, &batch, wall, record);
 #ifdef DEM_USER_LAW
         user_forces(f, rows, job, from, count, &batch, wall, record);
 #endif
@@ -400,7 +527,8 @@ DEM_INLINE void contact_batches(const dem_features f, const dem_rows *rows, cons
                 scatter(f, rows, &batch, g, c->target + from + g, true);
         }
     }
-    job->tally->overlap_ratio = largest;
+    tally.overlap_ratio = largest;
+    *given->tally = tally;
 }
 
 #endif

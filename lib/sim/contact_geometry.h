@@ -7,7 +7,7 @@
 #include "sim/law/adhesion.h"
 #include "sim/law/friction.h"
 
-enum { BATCH = 64 };
+enum { BATCH = 64 };  // 32 to 128 are within 4 % of it
 
 // what the loops hand on, by lane
 enum {
@@ -44,7 +44,17 @@ enum {
     AT_SPRING = 56,       // turned with the contact
     AT_MASS_ITSELF = 59,  // m_eff (rate) and its root (restitution)
     AT_MASS_ROOT = 60,
-    AT_COUNT = 61
+    // between the halves of the law, partly where what geometry has used was
+    AT_TRIAL = 45,  // friction without its cap
+    AT_STRETCHED = 48,
+    AT_PART = 51,  // that the cap leaves of it
+    AT_CAP = 52,   // its square
+    AT_DAMPING = 53,
+    AT_NET = 54,   // normal force
+    AT_LOST = 55,  // by it
+    AT_SLIDE = 61,  // tangential stiffness, now and a step ago
+    AT_OLD_SLIDE = 62,
+    AT_COUNT = 63
 };
 
 typedef struct contact_batch {
@@ -76,7 +86,7 @@ DEM_INLINE void store3(double *const column[3], size_t at, wide3 v)
 /// Sums in lanes of 8 whatever the width.
 DEM_INLINE void tally_add(double sum[DEM_BLOCK_LANES], size_t g, wide x)
 {
-    double *lane = sum + g % DEM_BLOCK_LANES;
+    double *lane = sum + ((int)DEM_WIDTH == (int)DEM_BLOCK_LANES ? 0 : g % DEM_BLOCK_LANES);
     wide_store(lane, wide_load(lane) + x);
 }
 
@@ -206,7 +216,8 @@ DEM_INLINE void put_lens(contact_batch *batch, size_t g, lens shared)
 
 /// One side of a pair: its arm, radius and, where it counts, its turn. The loops are short, so that the processor, which
 /// looks about a hundred waiting instructions ahead, has several turns of each under way: 18 % of the pass. (Loops that
-/// take the next turn of one step beside this turn of the next, or two turns at once, were slower.)
+/// take the next turn of one step beside this turn of the next, or two turns at once, were slower; asking for the rows
+/// of the next loop ahead is 1 % faster for clumps and 2 % slower for spheres.)
 DEM_INLINE void pair_side(const dem_features f, const contact_side *side, size_t g, contact_batch *batch, int arm,
                           int radius, int pose)
 {

@@ -1,3 +1,4 @@
+// Lists of the contacts of pairs.
 #include "sim/contacts.h"
 
 #include <stdatomic.h>
@@ -10,217 +11,8 @@
 enum { SEGMENTS_TO_SHARE = 8 };  // dirty ones that are worth more than one thread
 enum { IDLE_MOST = 12 };         // idle places beyond the spare ones that a step may come by
 enum { SPARE_MOST = 24 };        // places a list may spare
-enum { REBUILT_SELDOM = 60 };   // steps: where a list is rebuilt less often, spare places cost more than they save
+enum { REBUILT_SELDOM = 60 };    // steps: where a list is rebuilt less often, spare places cost more than they save
 enum { SPARED_LONG = 400 };      // steps: after these it has to show again that it needs them
-
-static size_t to_blocks(size_t count)
-{
-    return (count + DEM_BLOCK_LANES - 1) / DEM_BLOCK_LANES * DEM_BLOCK_LANES;
-}
-
-static void *grown_column(const void *old, const dem_contacts *from, const dem_segment *to, size_t segments,
-                          size_t capacity, size_t width)
-{
-    char *p = aligned_alloc(64, (capacity * width + 127) / 64 * 64);
-    if (!p)
-        return NULL;
-    memset(p, 0, capacity * width);
-    for (size_t i = 0; old && i < segments; i++) {
-        const dem_segment *s = &from->segments[i];
-        memcpy(p + to[i].begin * width, (const char *)old + s->begin * width, (s->end - s->begin) * width);
-    }
-    return p;
-}
-
-// moves every segment to its place in larger columns
-static bool move_columns(const dem_features *f, dem_contacts *contacts, const dem_segment *to, size_t segments,
-                         size_t capacity, int form)
-{
-    bool walls = form >= 0, mesh = form == DEM_FORM_MESH, good = true;
-    dem_contact_columns columns = {0};
-#define COLUMN(type, name, unit, when, about)                                                                          \
-    if (when) {                                                                                                        \
-        columns.name = grown_column(contacts->columns.name, contacts, to, segments, capacity, sizeof(type));           \
-        good = good && columns.name;                                                                                   \
-    }
-    DEM_CONTACT_COLUMNS(COLUMN)
-#undef COLUMN
-    dem_contact_columns *unused = good ? &contacts->columns : &columns;
-#define COLUMN(type, name, unit, when, about) free(unused->name);
-    DEM_CONTACT_COLUMNS(COLUMN)
-#undef COLUMN
-    if (!good)
-        return false;
-    contacts->columns = columns;
-    contacts->capacity = capacity;
-    for (size_t i = 0; i < segments; i++) {
-        dem_segment *s = &contacts->segments[i];
-        s->end = to[i].begin + (s->end - s->begin);
-        s->begin = to[i].begin;
-        s->capacity = to[i].capacity;
-    }
-    return true;
-}
-
-dem_status dem_contacts_create(dem_world *w, dem_contacts *contacts, int form, dem_error *error)
-{
-    *contacts = (dem_contacts){.segments = dem_alloc_zero(w->segment_count, sizeof *contacts->segments)};
-    if (w->features.soft)
-        contacts->runs = dem_alloc_zero(w->segment_count, sizeof *contacts->runs);
-    if (!contacts->segments || (w->features.soft && !contacts->runs) || !move_columns(&w->features, contacts, contacts->segments, w->segment_count, 0, form))
-        return dem_fail_memory(error);
-    return DEM_OK;
-}
-
-void dem_contacts_release(dem_contacts *contacts, size_t segments)
-{
-    for (size_t i = 0; contacts->runs && i < segments; i++)
-        dem_soft_runs_release(&contacts->runs[i]);
-    free(contacts->runs);
-#define COLUMN(type, name, unit, when, about) free(contacts->columns.name);
-    DEM_CONTACT_COLUMNS(COLUMN)
-#undef COLUMN
-    free(contacts->segments);
-    free(contacts->slot_body);
-}
-
-bool dem_contacts_reserve(dem_world *w, dem_contacts *contacts, int form, const size_t *needed)
-{
-    bool fits = true;
-    for (size_t i = 0; i < w->segment_count; i++)
-        fits = fits && (!contacts->segments[i].dirty || to_blocks(needed[i]) <= contacts->segments[i].capacity);
-    if (fits)
-        return true;
-    dem_segment *to = dem_alloc_zero(w->segment_count, sizeof *to);
-    size_t capacity = 0;
-    for (size_t i = 0; to && i < w->segment_count; i++) {
-        const dem_segment *s = &contacts->segments[i];
-        size_t most = s->dirty && needed[i] > s->end - s->begin ? needed[i] : s->end - s->begin;
-        // short lists grow more in proportion
-        to[i].capacity = most <= s->capacity && s->capacity < 2 * most ? s->capacity : to_blocks(most + most / 5 + 16);
-        if (most == 0)
-            to[i].capacity = 0;
-        to[i].begin = capacity;
-        capacity += to[i].capacity;
-    }
-    bool good = to && move_columns(&w->features, contacts, to, w->segment_count, capacity, form);
-    free(to);
-    return good;
-}
-
-size_t dem_contact_bytes(const dem_features *f, int form)
-{
-    bool walls = form >= 0, mesh = form == DEM_FORM_MESH;
-    size_t bytes = 0;
-#define COLUMN(type, name, unit, when, about)                                                                          \
-    if (when)                                                                                                          \
-        bytes += sizeof(type);
-    DEM_CONTACT_COLUMNS(COLUMN)
-#undef COLUMN
-    return bytes;
-}
-
-dem_contact_history dem_history_get(const dem_contact_columns *c, size_t at)
-{
-    dem_contact_history h = {.twist = c->twist ? c->twist[at] : 0,
-                             .patch = c->patch ? c->patch[at] : 0,
-                             .attached = c->attached ? c->attached[at] : 0,
-                             .loss = c->loss ? c->loss[at] : 0};
-    for (int k = 0; k < 3; k++) {
-        h.spring[k] = c->spring[k] ? c->spring[k][at] : 0;
-        h.dash[k] = c->dash[k] ? c->dash[k][at] : 0;
-    }
-    return h;
-}
-
-void dem_history_put(const dem_contact_columns *c, size_t at, const dem_contact_history *h)
-{
-    for (int k = 0; k < 3; k++) {
-        if (c->spring[k])
-            c->spring[k][at] = h->spring[k];
-        if (c->dash[k])
-            c->dash[k][at] = h->dash[k];
-    }
-    if (c->twist)
-        c->twist[at] = h->twist;
-    if (c->patch)
-        c->patch[at] = h->patch;
-    if (c->attached)
-        c->attached[at] = h->attached;
-    if (c->loss)
-        c->loss[at] = h->loss;
-}
-
-dem_contact_extras dem_extras_of(const dem_contact_columns *c)
-{
-    dem_contact_extras extras = {.count = 0};
-#define EXTRA(type, name, unit, when, about)                                                                           \
-    if (c->name)                                                                                                       \
-        extras.column[extras.count++] = c->name;
-    DEM_CONTACT_EXTRAS(EXTRA)
-#undef EXTRA
-    return extras;
-}
-
-bool dem_extras_keep(const dem_contact_extras *extras, const dem_segment *s, const dem_contact_item *items,
-                     size_t count, dem_extras_kept *kept)
-{
-    size_t needed = (size_t)extras->count * count;
-    while (kept->capacity < needed)
-        if (!dem_grow(&kept->numbers, &kept->capacity, kept->capacity, sizeof *kept->numbers))
-            return false;
-    for (int e = 0; e < extras->count; e++)
-        for (size_t k = 0; k < count; k++)
-            kept->numbers[(size_t)e * count + k] =
-                items[k].old ? extras->column[e][s->begin + items[k].old - 1] : 0;
-    return true;
-}
-
-void dem_extras_give(const dem_contact_extras *extras, const dem_segment *s, size_t count, size_t full,
-                     const dem_extras_kept *kept)
-{
-    for (int e = 0; e < extras->count; e++)
-        for (size_t k = 0; k < full; k++)
-            extras->column[e][segment_place(s, k)] = k < count ? kept->numbers[(size_t)e * count + k] : 0;
-}
-
-dem_contact_item dem_contact_get(const dem_contact_columns *c, size_t at)
-{
-    return (dem_contact_item){.a = c->a[at],
-                              .b = c->b ? c->b[at] : 0,
-                              .sphere_a = c->sphere_a[at],
-                              .sphere_b = c->sphere_b[at],
-                              .shift = c->shift ? c->shift[at] : 0,
-                              .law = c->law ? c->law[at] : 0,
-                              .history = dem_history_get(c, at)};
-}
-
-void dem_contact_put(const dem_contact_columns *c, size_t at, const dem_contact_item *item)
-{
-    c->a[at] = item->a;
-    c->sphere_a[at] = item->sphere_a;
-    c->sphere_b[at] = item->sphere_b;
-    if (c->b)
-        c->b[at] = c->target[at] = item->b;
-    if (c->shift)
-        c->shift[at] = item->shift;
-    if (c->law)
-        c->law[at] = item->law;
-    dem_history_put(c, at, &item->history);
-    if (c->weight)
-        c->weight[at] = 1;
-    // a mesh contact that has not been measured yet does not touch
-    for (int k = 0; c->geometry[0] && k < 7; k++)
-        c->geometry[k][at] = k == 3 ? DEM_MESH_NO_OVERLAP : 0;
-}
-
-dem_contact_item dem_contact_idle(const dem_world *w, int form)
-{
-    uint32_t wall = (uint32_t)w->walls.count + (form == DEM_FORM_CYLINDER);
-    return (dem_contact_item){.a = w->bodies.dummy, .b = w->bodies.dummy + 1, .sphere_b = form < 0 ? 0 : wall};
-}
-
-// ---- lists of pairs
 
 enum { HISTORY = 10 };
 
@@ -274,11 +66,22 @@ static void take_history(const dem_world *w, const dem_segment *s, const dem_pai
     item->old = (uint32_t)(at - s->begin) + 1;
 }
 
-// what the first one of the pair remembers stands for all
-static void take_soft_history(const dem_segment *s, const dem_pair *p, entry *item)
+static bool same_parts(const dem_soft *soft, uint32_t a, uint32_t b, uint32_t other_a, uint32_t other_b)
 {
-    if (p->count)
-        item->old = (uint32_t)(segment_place(s, p->start) - s->begin) + 1;
+    return soft_part(soft, a) == soft_part(soft, other_a) && soft_part(soft, b) == soft_part(soft, other_b);
+}
+
+// what the first one of a pair of parts remembers stands for all
+static void take_soft_history(const dem_world *w, const dem_segment *s, const dem_pair *p, entry *item)
+{
+    const dem_contact_columns *c = &w->contacts.columns;
+    for (size_t k = 0; k < p->count; k++) {
+        size_t at = segment_place(s, p->start + k);
+        if (same_parts(&w->soft, item->sphere_a, item->sphere_b, c->sphere_a[at], c->sphere_b[at])) {
+            item->old = (uint32_t)(at - s->begin) + 1;
+            return;
+        }
+    }
 }
 
 static bool make_room(list *l, size_t more)
@@ -332,8 +135,9 @@ static bool list_pair(const dem_world *w, const dem_segment *s, dem_pair *p, con
                           .law = w->laws.table[a->material * w->laws.material_count + b->material]};
             if (!w->features.soft)
                 take_history(w, s, p, &item, &old);
-            else if (i == 0)
-                take_soft_history(s, p, &item);
+            else if (i == 0 || !same_parts(&w->soft, item.sphere_a, item.sphere_b, l->items[l->count - 1].sphere_a,
+                                           l->items[l->count - 1].sphere_b))
+                take_soft_history(w, s, p, &item);
             l->items[l->count++] = item;
         }
     }
@@ -433,7 +237,7 @@ static bool rebuild_segment(dem_world *w, size_t segment, list *l)
             return false;
         w->pairs.fresh[i] = 0;
     }
-    size_t full = to_blocks(l->count + s->spare);
+    size_t full = contacts_padded(l->count + s->spare);
     s->idle = (uint32_t)(full - l->count);
     if (!make_room(l, s->idle))
         return false;

@@ -96,6 +96,12 @@ void dem_weigh_contacts(dem_world *world, size_t begin, size_t end);
 /// Memory of a contact [B].
 size_t dem_contact_bytes(const dem_features *features, int form);
 
+/// Places of a list of so many, whole blocks.
+static inline size_t contacts_padded(size_t count)
+{
+    return (count + DEM_BLOCK_LANES - 1) / DEM_BLOCK_LANES * DEM_BLOCK_LANES;
+}
+
 /// What a contact remembers, beside the extras.
 typedef struct dem_contact_history {
     double spring[3], dash[3], twist, patch, attached, loss;

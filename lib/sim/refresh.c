@@ -11,7 +11,7 @@ enum { LOOKS_TO_SHARE = 256 };  // that are worth more than one thread
 enum { AHEAD = 6 };             // looks that memory is asked for ahead
 
 static const double HORIZON = 80;                             // steps that a margin should last
-static const double MARGIN_LEAST = 0.01, MARGIN_MOST = 0.08;  // of the length that suits the shape
+static const double MARGIN_LEAST = 0.01, MARGIN_MOST = 0.15;  // of the length that suits the shape
 static const double REACH_SHARE = 0.4;                        // of the bounding radius, that length at least
 static const double SOFT_SHARE = 0.5;                         // of what soft contacts look ahead, at least: found by trial
 static const float HEIGHT_ERROR = 4e-6f;                      // of the bounding radii: what 32 bits may be off by
@@ -128,6 +128,30 @@ static bool same_candidates(const dem_world *w, const dem_pair *p, const dem_fre
     return true;
 }
 
+// soft contacts of the same parts follow each other, in the order they have
+static bool sort_by_parts(const dem_world *w, const dem_pair *p, dem_candidates *c, const dem_fresh *fresh)
+{
+    uint32_t shape_a = w->bodies.shape[p->a], shape_b = w->bodies.shape[p->b];
+    size_t count = fresh->count, begin[DEM_SOFT_PARTS * DEM_SOFT_PARTS + 1] = {0};
+    if (count < 2 || w->soft.parts[shape_a] * w->soft.parts[shape_b] == 1)
+        return true;
+    if (!reserve(c, count))
+        return false;
+    const uint8_t *a = w->soft.part + w->templates.items[shape_a].first;
+    const uint8_t *b = w->soft.part + w->templates.items[shape_b].first;
+    uint32_t *pairs = c->pairs + 2 * fresh->begin, *was = c->pairs + 2 * c->count;
+    memcpy(was, pairs, 2 * count * sizeof *was);
+    for (size_t i = 0; i < count; i++)
+        begin[DEM_SOFT_PARTS * a[was[2 * i]] + b[was[2 * i + 1]] + 1]++;
+    for (size_t k = 1; k < DEM_SOFT_PARTS * DEM_SOFT_PARTS; k++)
+        begin[k] += begin[k - 1];
+    for (size_t i = 0; i < count; i++) {
+        size_t to = begin[DEM_SOFT_PARTS * a[was[2 * i]] + b[was[2 * i + 1]]]++;
+        memcpy(pairs + 2 * to, was + 2 * i, 2 * sizeof *was);
+    }
+    return true;
+}
+
 // each body's share of the slack in proportion to its stride
 static void share_slack(dem_world *w, const dem_pair *p, double slack, double stride_a, double stride_b, dem_fresh *out)
 {
@@ -168,6 +192,8 @@ static bool look_at_pair(dem_world *w, dem_fresh *fresh)
         fresh->count = dem_bonds_mask(w, p, c->pairs + 2 * fresh->begin, fresh->count);
         c->count = fresh->begin + fresh->count;
     }
+    if (w->soft.part && !sort_by_parts(w, p, c, fresh))
+        return false;
     share_slack(w, p, slack - w->ahead, stride_a, stride_b, fresh);
     fresh->changed = !same_candidates(w, p, fresh);
     if (!fresh->changed)

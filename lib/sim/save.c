@@ -248,7 +248,8 @@ static void pass_pairs(cursor *c, dem_world *w)
     dem_pairs *p = &w->pairs;
     size_t n = w->bodies.count, ends = n + 1, adjacency = 2 * p->count, limits = adjacency, firsts = ends;
     pass_array(c, &p->items, &p->count, sizeof *p->items);
-    p->capacity = p->count;
+    if (!c->out)
+        p->capacity = p->count;
     pass_array(c, &p->first, &firsts, sizeof *p->first);
     pass_array(c, &p->adjacency_first, &ends, sizeof *p->adjacency_first);
     pass_array(c, &p->adjacency, &adjacency, sizeof *p->adjacency);

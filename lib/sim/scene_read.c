@@ -268,7 +268,7 @@ static dem_status check_laws(dem_scene_reader *r, const dem_scene_value *root)
     return DEM_OK;
 }
 
-// soft contacts have the laws of normal force and friction only
+// soft contacts have no surfaces that hold on to each other
 static dem_status check_soft(dem_scene_reader *r, const dem_scene_value *root)
 {
     const dem_scene *scene = r->scene;
@@ -279,8 +279,6 @@ static dem_status check_soft(dem_scene_reader *r, const dem_scene_value *root)
     for (size_t i = 0; scene->multiple == DEM_MULTIPLE_SOFT && i < scene->law_count; i++) {
         const dem_pair_law *law = &scene->laws[i];
         const char *what = law->normal == DEM_NORMAL_JKR || law->normal == DEM_NORMAL_DMT ? "adhesion"
-                           : law->rolling != DEM_ROLLING_NONE                             ? "rolling resistance"
-                           : law->twisting != DEM_TWISTING_NONE                           ? "twisting resistance"
                            : law->cohesion != DEM_COHESION_NONE                           ? "cohesion"
                                                                                           : NULL;
         if (what)

@@ -116,6 +116,11 @@ static dem_status check_features(const dem_world *w, dem_error *error)
                                                  .decay = true,
                                                  .mindlin = true,
                                                  .slide_damping = true,
+                                                 .rolling = true,
+                                                 .roll_constant = true,
+                                                 .roll_bound = true,
+                                                 .twisting = true,
+                                                 .twist_constant = true,
                                                  .offset = true,
                                                  .scaled = true,
                                                  .periodic = true,
@@ -135,11 +140,47 @@ static dem_status check_features(const dem_world *w, dem_error *error)
     return DEM_OK;
 }
 
+static void forget_parts(dem_soft *soft)
+{
+    free(soft->part);
+    free(soft->parts);
+    free(soft->couplings);
+    soft->part = soft->parts = NULL;
+    soft->couplings = NULL;
+}
+
+// the parts of every shape; nothing is kept where each is one
+static dem_status split_shapes(dem_world *w, dem_error *error)
+{
+    dem_soft *soft = &w->soft;
+    size_t most = 1;
+    soft->part = dem_alloc_zero(w->templates.sphere_count, sizeof *soft->part);
+    soft->parts = dem_alloc_zero(w->templates.count, sizeof *soft->parts);
+    soft->couplings = dem_alloc_zero(w->templates.count, sizeof *soft->couplings);
+    if (!soft->part || !soft->parts || !soft->couplings)
+        return dem_fail_memory(error);
+    for (size_t i = 0; i < w->templates.count; i++) {
+        const dem_template *t = &w->templates.items[i];
+        const double(*spheres)[4] = (const double(*)[4])w->templates.spheres + t->first;
+        size_t parts = dem_soft_split(spheres, t->count, t->equivalent_diameter, soft->part + t->first);
+        if (!parts)
+            return dem_fail_memory(error);
+        dem_soft_part_distances(spheres, t->count, t->equivalent_diameter, soft->part + t->first, parts,
+                                &soft->couplings[i]);
+        soft->parts[i] = (uint8_t)parts;
+        most = parts > most ? parts : most;
+    }
+    if (most == 1)
+        forget_parts(soft);
+    return DEM_OK;
+}
+
 dem_status dem_soft_create(dem_world *w, double tau, dem_error *error)
 {
     if (!w->features.soft)
         return DEM_OK;
     DEM_TRY(check_features(w, error));
+    DEM_TRY(split_shapes(w, error));
     size_t n = w->bodies.padded;
     w->soft.kernels = dem_soft_kernels_choose(w->kernels->name);
     w->soft.first = dem_alloc_zero(n, sizeof *w->soft.first);
@@ -160,13 +201,13 @@ dem_status dem_soft_create(dem_world *w, double tau, dem_error *error)
 
 static void release_work(dem_soft_work *work)
 {
-    void *all[] = {work->rows, work->overlap, work->place, work->sorted, work->patches};
+    void *all[] = {work->rows, work->overlap, work->place, work->sorted, work->patches, work->share};
     for (size_t i = 0; i < sizeof all / sizeof *all; i++)
         free(all[i]);
     *work = (dem_soft_work){0};
 }
 
-static bool reserve_work(dem_soft_work *work, size_t capacity)
+static bool reserve_work(dem_soft_work *work, size_t capacity, bool parted)
 {
     release_work(work);
     work->rows = aligned_alloc(64, 2 * capacity * DEM_ROW * sizeof *work->rows);
@@ -174,7 +215,8 @@ static bool reserve_work(dem_soft_work *work, size_t capacity)
     work->place = dem_alloc(2 * capacity, sizeof *work->place);
     work->sorted = dem_alloc(capacity, sizeof *work->sorted);
     work->patches = dem_alloc(capacity, sizeof *work->patches);
-    return work->rows && work->overlap && work->place && work->sorted && work->patches;
+    work->share = parted ? dem_alloc(2 * capacity, sizeof *work->share) : NULL;
+    return work->rows && work->overlap && work->place && work->sorted && work->patches && (work->share || !parted);
 }
 
 void dem_soft_release(dem_world *w)
@@ -184,6 +226,7 @@ void dem_soft_release(dem_world *w)
     free(w->soft.work);
     free(w->soft.weights);
     free(w->soft.tables);
+    forget_parts(&w->soft);
     free(w->soft.first);
     free(w->soft.radius);
 }
@@ -204,14 +247,19 @@ static bool add_run(dem_soft_runs *runs, size_t first)
     return true;
 }
 
-static bool same_bodies(const dem_contact_columns *c, size_t i, size_t k, bool wall)
+bool dem_soft_same_run(const dem_world *w, const dem_contacts *contacts, size_t i, size_t k, int form)
 {
+    const dem_contact_columns *c = &contacts->columns;
+    bool wall = form >= 0, parted = w->soft.part && form != DEM_FORM_MESH;
+    if (c->a[i] != c->a[k] || (parted && w->soft.part[c->sphere_a[i]] != w->soft.part[c->sphere_a[k]]))
+        return false;
     if (wall)
-        return c->a[i] == c->a[k] && c->sphere_b[i] == c->sphere_b[k];
-    return c->a[i] == c->a[k] && c->b[i] == c->b[k] && !(c->shift && c->shift[i] != c->shift[k]);
+        return c->sphere_b[i] == c->sphere_b[k];
+    return c->b[i] == c->b[k] && !(c->shift && c->shift[i] != c->shift[k]) &&
+           !(parted && w->soft.part[c->sphere_b[i]] != w->soft.part[c->sphere_b[k]]);
 }
 
-static bool find_runs(const dem_world *w, dem_contacts *contacts, size_t segment, bool wall)
+static bool find_runs(const dem_world *w, dem_contacts *contacts, size_t segment, int form)
 {
     dem_segment *s = &contacts->segments[segment];
     dem_soft_runs *runs = &contacts->runs[segment];
@@ -220,10 +268,10 @@ static bool find_runs(const dem_world *w, dem_contacts *contacts, size_t segment
     runs->count = 0;
     // idle ones stand last
     for (size_t at = s->begin; at < s->end && c->a[at] < w->bodies.count; end = ++at) {
-        if ((at == s->begin || !same_bodies(c, at - 1, at, wall)) && !add_run(runs, at - s->begin))
+        if ((at == s->begin || !dem_soft_same_run(w, contacts, at - 1, at, form)) && !add_run(runs, at - s->begin))
             return false;
         c->weight[at] = soft_weight(&w->soft, c->a[at], c->sphere_a[at]);
-        if (!wall)
+        if (form < 0)
             c->weight[at] *= soft_weight(&w->soft, c->b[at], c->sphere_b[at]);
         runs->rise[runs->count - 1] += c->weight[at];
     }
@@ -244,7 +292,7 @@ dem_status dem_soft_reserve(dem_world *w, dem_error *error)
         for (size_t i = 0; contacts->segments && i < w->segment_count; i++) {
             size_t size = contacts->segments[i].end - contacts->segments[i].begin;
             most = size > most ? size : most;
-            if (contacts->segments[i].fresh && !find_runs(w, contacts, i, form >= 0))
+            if (contacts->segments[i].fresh && !find_runs(w, contacts, i, form))
                 return dem_fail_memory(error);
         }
     }
@@ -252,7 +300,7 @@ dem_status dem_soft_reserve(dem_world *w, dem_error *error)
         return DEM_OK;
     size_t capacity = most + most / 4 + 2 * DEM_BLOCK_LANES;
     for (int t = 0; t < w->threads; t++)
-        if (!reserve_work(&w->soft.work[t], capacity))
+        if (!reserve_work(&w->soft.work[t], capacity, w->soft.part != NULL))
             return dem_fail_memory(error);
     w->soft.capacity = capacity;
     return DEM_OK;

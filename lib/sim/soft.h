@@ -11,6 +11,9 @@
 /// against what the pairs' speeds differ by, so that rocking on a patch is damped, too. Friction acts at the mean
 /// contact point and, as a twisting spring, by the radius of gyration of the patch.
 ///
+/// Where a grain is concave, it is cut into parts that are nearly convex (soft_parts.c), and each pair of parts has a D
+/// and a memory of its own: they bear side by side, and share where they are near (soft_couple.c). All has a potential.
+///
 /// A wall is one partner, and so is each of the six sides of a box. The contacts with a mesh are grouped by normals
 /// first, deepest first, so that each face of a groove bears for itself; see dem_soft_leaders.
 ///
@@ -23,6 +26,8 @@
 #include "dem/world.h"
 #include "sim/kernels.h"
 
+typedef struct dem_contacts dem_contacts;
+
 /// Pairs of spheres count down to this overlap [tau]; with less than the half of it, in part.
 #define DEM_SOFT_REACH 6.0
 
@@ -30,8 +35,8 @@
 /// finite [1/kg].
 #define DEM_SOFT_HEAVIEST 1e-100
 
-/// The contacts of one pair of bodies, or of a body and a wall, stand in a run. Its first one remembers for all; at a
-/// mesh, where they change places, all do.
+/// The contacts of one pair of parts of bodies, or of a part and a wall, stand in a run. Its first one remembers for
+/// all; at a mesh, where they change places, all do.
 typedef struct dem_soft_runs {
     uint32_t *first;  ///< [count + 1] contact, from the segment's first
     double *rise;     ///< [count] what D is above the deepest overlap at most [m]
@@ -52,6 +57,7 @@ typedef struct dem_soft_work {
     uint32_t *place;  ///< contacts of the rows of groups
     uint32_t *sorted;
     dem_soft_patch *patches;
+    double *share;  ///< [2 a patch] of its force that it bears, by how much stiffer it may be; NULL: no parts
 } dem_soft_work;
 
 /// The weights that bodies of one shape and of about the same size share.
@@ -67,6 +73,9 @@ typedef struct dem_soft {
     double *weights;      ///< of the spheres of each shape and rung of sizes [-]
     uint32_t *first;      ///< [bodies] weight of a sphere: this plus the sphere's row, modulo 2^32
     double *radius;       ///< [bodies] of curvature [m]
+    uint8_t *part;        ///< [template spheres] NULL: every shape is one part
+    uint8_t *parts;       ///< [shapes] how many each has; NULL: one
+    struct dem_soft_coupling *couplings;  ///< [shapes] of the parts; NULL: one
     dem_soft_work *work;  ///< [threads]
     size_t capacity;      ///< contacts in each
     dem_soft_table *tables;
@@ -79,20 +88,52 @@ static inline double soft_weight(const dem_soft *soft, uint32_t row, uint32_t sp
     return soft->weights[(uint32_t)(soft->first[row] + sphere)];
 }
 
-/// The normals about which the contacts with a mesh are grouped: that of the deepest, of the deepest that is not near
-/// it, and so on. A contact belongs to the first one that it is near to.
-enum { DEM_SOFT_LEADERS = 8 };
+/// Parts of a grain at most.
+enum { DEM_SOFT_PARTS = 8 };
+
+static inline uint32_t soft_part(const dem_soft *soft, uint32_t sphere)
+{
+    return soft->part ? soft->part[sphere] : 0;
+}
+
+/// Cuts the spheres (x y z r) of a template, of the equivalent diameter `size` [m], into parts; part[i] is below their
+/// number, which is returned. 0: no memory.
+size_t dem_soft_split(const double (*spheres)[4], size_t count, double size, uint8_t *part);
+
+/// How the parts of a shape share what they bear.
+typedef struct dem_soft_coupling {
+    double near[DEM_SOFT_PARTS][DEM_SOFT_PARTS];  ///< 1: the same place; 0: far apart [-]
+    double stiffening;                            ///< 1 over the least eigenvalue of that [-]
+} dem_soft_coupling;
+
+void dem_soft_part_distances(const double (*spheres)[4], size_t count, double size, const uint8_t *part, size_t parts,
+                             dem_soft_coupling *coupling);
+
+/// How much stiffer than one contact the parts of two bodies may be together, or of one at a wall [-].
+double dem_soft_stiffening(const dem_world *world, uint32_t a, uint32_t b, int form);
+
+/// Sets the shares of the patches of a segment.
+void dem_soft_couple(const dem_world *world, const dem_contacts *contacts, size_t segment, int form,
+                     const dem_soft_work *work, size_t count);
+
+/// Contacts with a mesh are of one group where the cosine of their normals is above that of 30 degrees.
+#define DEM_SOFT_NEAR 0.866
+
+/// The normals about which the contacts of a part with a mesh are grouped: that of the deepest, of the deepest that is
+/// not near it, and so on. A contact belongs to the first one of its part that it is near to.
+enum { DEM_SOFT_LEADERS = 16 };
 typedef struct dem_soft_leaders {
     dem_vec3 normal[DEM_SOFT_LEADERS];
+    uint32_t part[DEM_SOFT_LEADERS];
     int count;
 } dem_soft_leaders;
 
 /// The group of a contact; -1: of none yet.
-static inline int soft_group(const dem_soft_leaders *leaders, dem_vec3 normal)
+static inline int soft_group(const dem_soft_leaders *leaders, dem_vec3 normal, uint32_t part)
 {
-    const double near = 0.866;  // cosine of 30 degrees
     for (int i = 0; i < leaders->count; i++)
-        if (normal.x * leaders->normal[i].x + normal.y * leaders->normal[i].y + normal.z * leaders->normal[i].z > near)
+        if (leaders->part[i] == part && normal.x * leaders->normal[i].x + normal.y * leaders->normal[i].y +
+                                                normal.z * leaders->normal[i].z > DEM_SOFT_NEAR)
             return i;
     return leaders->count == DEM_SOFT_LEADERS ? DEM_SOFT_LEADERS - 1 : -1;
 }
@@ -113,6 +154,11 @@ double dem_soft_likely_overlap(const dem_world *world);
 void dem_soft_explain(const dem_world *world, dem_buffer *out);
 
 void dem_soft_runs_release(dem_soft_runs *runs);
+
+/// Whether two contacts, of pairs (form -1) or walls, are of the same bodies and parts. A mesh's are not yet cut by
+/// parts in runs.
+bool dem_soft_same_run(const dem_world *world, const dem_contacts *contacts, size_t place, size_t other,
+                       int form);
 
 /// Finds the runs and weights of the segments whose lists have changed, and makes room for the work of all.
 dem_status dem_soft_reserve(dem_world *world, dem_error *error);

@@ -41,15 +41,24 @@ static double scale_of(const dem_world *w, uint32_t shape)
     return count ? sum / (double)count : 0;
 }
 
+static void explain_parts(const dem_world *w, dem_buffer *out)
+{
+    for (uint32_t shape = 0; w->soft.parts && shape < w->shape_count; shape++)
+        if (w->soft.parts[shape] > 1)
+            dem_buffer_print(out, "  %-14s is concave: %u convex parts, each with contacts of its own\n",
+                             w->shape_names[shape], (unsigned)w->soft.parts[shape]);
+}
+
 void dem_soft_explain(const dem_world *w, dem_buffer *out)
 {
     double overlap = dem_soft_likely_overlap(w);
     if (w->features.soft) {
-        dem_buffer_text(out, "soft contacts: one for each pair of bodies; tau ");
+        dem_buffer_text(out, "soft contacts: one for each pair of bodies, or of their convex parts; tau ");
         dem_buffer_number(out, w->soft.tau, 3);
         dem_buffer_print(out, " m, %s; %zu table%s of weights\n",
                          w->soft.automatic ? "by the overlap of likely impacts" : "as given", w->soft.table_count,
                          w->soft.table_count == 1 ? "" : "s");
+        explain_parts(w, out);
     }
     if (w->multiple != DEM_MULTIPLE_SUM && !w->features.soft)
         return;

@@ -7,7 +7,7 @@
 #include "sim/contacts.h"
 #include "sim/soft_law.h"
 
-enum { KEPT = 9 };  // numbers that a patch remembers
+enum { KEPT = 9, KEPT_MOST = 15 };  // numbers that a patch remembers, and with moments against rolling
 
 // what a segment's loops work on
 typedef struct soft_job {
@@ -19,7 +19,8 @@ typedef struct soft_job {
     dem_soft_work *work;
     dem_tally *tally;
     dem_contact_record *records;  // NULL: forces
-    double *kept[KEPT];           // columns of what contacts remember, from the segment's first; NULL: there is none
+    int kept_count;
+    double *kept[KEPT_MOST];      // columns of what contacts remember, from the segment's first; NULL: there is none
     double *attached;
     size_t size, rows, patches;
 } soft_job;
@@ -27,9 +28,11 @@ typedef struct soft_job {
 static void list_kept(soft_job *job)
 {
     const dem_contact_columns *c = &job->contacts->columns;
-    double *const kept[KEPT] = {c->spring[0], c->spring[1], c->spring[2], c->dash[0], c->dash[1],
-                                c->dash[2],   c->twist,     c->patch,     c->loss};
-    for (int k = 0; k < KEPT; k++)
+    double *const kept[KEPT_MOST] = {c->spring[0], c->spring[1], c->spring[2], c->dash[0], c->dash[1],
+                                     c->dash[2],   c->twist,     c->patch,     c->loss,    c->roll[0],
+                                     c->roll[1],   c->roll[2],   c->drag[0],   c->drag[1], c->drag[2]};
+    job->kept_count = c->roll[0] || c->drag[0] ? KEPT_MOST : KEPT;
+    for (int k = 0; k < job->kept_count; k++)
         job->kept[k] = kept[k] ? kept[k] + job->s->begin : NULL;
     job->attached = c->attached + job->s->begin;
 }
@@ -106,6 +109,11 @@ static dem_vec3 normal_of(const soft_job *job, size_t k)
     return v3(row[ROW_NORMAL], row[ROW_NORMAL + 1], row[ROW_NORMAL + 2]);
 }
 
+static uint32_t part_of(const soft_job *job, size_t k)
+{
+    return soft_part(&job->w->soft, job->contacts->columns.sphere_a[job->s->begin + k]);
+}
+
 // makes a patch of those of the contacts [begin, end) of a mesh that belong to a group: copies of their rows
 static void make_group(soft_job *job, size_t begin, size_t end, const dem_soft_leaders *leaders, int group)
 {
@@ -115,7 +123,7 @@ static void make_group(soft_job *job, size_t begin, size_t end, const dem_soft_l
     bool some = false;
     for (size_t k = begin; k < end; k++) {
         double d = work->overlap[k];
-        if (!(d > DEM_SOFT_APART) || soft_group(leaders, normal_of(job, k)) != group)
+        if (!(d > DEM_SOFT_APART) || soft_group(leaders, normal_of(job, k), part_of(job, k)) != group)
             continue;
         memcpy(work->rows + DEM_ROW * job->rows, work->rows + DEM_ROW * k, DEM_ROW * sizeof *work->rows);
         work->place[job->rows++] = (uint32_t)k;
@@ -140,7 +148,7 @@ static void make_group(soft_job *job, size_t begin, size_t end, const dem_soft_l
 static void forget(const soft_job *job, size_t k)
 {
     job->attached[k] = 0;
-    for (int i = 0; i < KEPT; i++)
+    for (int i = 0; i < job->kept_count; i++)
         if (job->kept[i])
             job->kept[i][k] = 0;
 }
@@ -151,16 +159,17 @@ static void make_groups(soft_job *job, size_t begin, size_t end)
     dem_soft_leaders leaders = {.count = 0};
     for (bool some = true; some && leaders.count < DEM_SOFT_LEADERS;) {
         double deepest = -DEM_SOFT_REACH * job->w->soft.tau;
-        dem_vec3 normal = v3(0, 0, 0);
-        some = false;
+        size_t leader = end;
         for (size_t k = begin; k < end; k++)
-            if (job->work->overlap[k] > deepest && soft_group(&leaders, normal_of(job, k)) < 0) {
+            if (job->work->overlap[k] > deepest && soft_group(&leaders, normal_of(job, k), part_of(job, k)) < 0) {
                 deepest = job->work->overlap[k];
-                normal = normal_of(job, k);
-                some = true;
+                leader = k;
             }
-        if (some)
-            leaders.normal[leaders.count++] = normal;
+        some = leader < end;
+        if (some) {
+            leaders.normal[leaders.count] = normal_of(job, leader);
+            leaders.part[leaders.count++] = part_of(job, leader);
+        }
     }
     for (int group = -1; group < leaders.count; group++)
         make_group(job, begin, end, &leaders, group);
@@ -202,8 +211,9 @@ typedef struct soft_eight {
     uint32_t a[DEM_BLOCK_LANES], b[DEM_BLOCK_LANES], law[DEM_BLOCK_LANES], shift[DEM_BLOCK_LANES];
     uint32_t first[DEM_BLOCK_LANES], members[DEM_BLOCK_LANES];
     bool remembers[DEM_BLOCK_LANES];
+    double share[DEM_BLOCK_LANES], stiffening[DEM_BLOCK_LANES];
     double sum[DEM_BLOCK_LANES], deepest[DEM_BLOCK_LANES], depth[DEM_BLOCK_LANES], radius[2][DEM_BLOCK_LANES];
-    double kept[KEPT][DEM_BLOCK_LANES];
+    double kept[KEPT_MOST][DEM_BLOCK_LANES];
     double momentum[2][DEM_BLOCK_LANES][DEM_ROW] __attribute__((aligned(64)));
     double force[3][DEM_BLOCK_LANES], hardness[DEM_BLOCK_LANES];
 } soft_eight;
@@ -222,6 +232,10 @@ static void fill_lane(const soft_job *job, soft_eight *e, size_t i)
     e->members[i] = p->count;
     e->deepest[i] = p->deepest;
     e->remembers[i] = job->attached[p->memory] > 0;
+    if (job->work->share) {
+        e->share[i] = job->work->share[2 * (p - job->work->patches)];
+        e->stiffening[i] = job->work->share[2 * (p - job->work->patches) + 1];
+    }
     e->radius[0][i] = job->w->soft.radius[e->a[i]];
     e->radius[1][i] = wall ? e->radius[0][i] : job->w->soft.radius[e->b[i]];
 }
@@ -234,13 +248,13 @@ static void fill_idle(const soft_job *job, soft_eight *e, size_t i)
     e->law[i] = e->shift[i] = e->first[i] = e->members[i] = 0;
     e->remembers[i] = false;
     e->deepest[i] = -DEM_SOFT_REACH * job->w->soft.tau;
-    e->radius[0][i] = e->radius[1][i] = 1;
+    e->share[i] = e->stiffening[i] = e->radius[0][i] = e->radius[1][i] = 1;
 }
 
 // what contacts remember that do not touch is 0
 static void fill_kept(const soft_job *job, soft_eight *e)
 {
-    for (int k = 0; k < KEPT; k++) {
+    for (int k = 0; k < job->kept_count; k++) {
         const double *from = job->kept[k];
         for (size_t i = 0; i < DEM_BLOCK_LANES; i++)
             e->kept[k][i] = from && i < e->count ? from[e->p[i]->memory] : 0;
@@ -255,7 +269,7 @@ static void remember(const soft_job *job, const soft_eight *e, size_t i)
     for (uint32_t m = 0; m < (mesh ? p->count : 1); m++) {
         size_t place = mesh ? job->work->place[p->row + m] : p->place;
         job->attached[place] = e->depth[i] > 0;
-        for (int k = 0; k < KEPT; k++)
+        for (int k = 0; k < job->kept_count; k++)
             if (job->kept[k])
                 job->kept[k][place] = e->kept[k][i];
     }
@@ -306,16 +320,25 @@ DEM_INLINE soft_spot load_spot(const dem_features f, const soft_job *job, const 
     wide a = wide_load(e->radius[0] + l), b = wide_load(e->radius[1] + l), least = wide_min(a, b);
     soft_spot spot = {.reduced = reduced_radius(a, b),
                       .area = least * least / (a + b),
+                      .radius_a = a,
+                      .radius_b = b,
                       .tau = w->soft.tau,
                       .last_step = w->last_step,
                       .next_step = w->next_step,
+                      .parted = job->work->share != NULL,
                       .wall = wall};
+    if (spot.parted) {
+        spot.share = wide_load(e->share + l);
+        spot.stiffening = wide_load(e->stiffening + l);
+    }
     if (wall)
         spot.reduced = spot.area = a;
-    for (int k = 0; f.mixed && k < LAW_MORE; k += 8)
+    int slots = features_turning(f) || f.roll_bound ? SOFT_LAW : LAW_MORE;
+    for (int k = 0; f.mixed && k < slots; k += 8)
         rows_load(w->laws.rows + k, LAW_SLOTS, e->law + l, spot.law + k);
-    for (int k = 0; !f.mixed && k < LAW_MORE; k++)
+    for (int k = 0; !f.mixed && k < slots; k++)
         spot.law[k] = wide_all(w->laws.rows[k]);
+    spot.step = law_step_of(f, spot.law, w->last_step, w->next_step);
     return spot;
 }
 
@@ -324,19 +347,28 @@ DEM_INLINE wide3 kept3(const soft_eight *e, int k, size_t l)
     return (wide3){wide_load(e->kept[k] + l), wide_load(e->kept[k + 1] + l), wide_load(e->kept[k + 2] + l)};
 }
 
-DEM_INLINE void keep_memory(soft_eight *e, size_t l, const soft_memory *m)
+DEM_INLINE void keep_memory(soft_eight *e, size_t l, const soft_memory *m, bool turning)
 {
     const wide kept[KEPT] = {m->spring.x, m->spring.y, m->spring.z, m->dash.x, m->dash.y,
                              m->dash.z,   m->twist,    m->patch,    m->loss};
     for (int k = 0; k < KEPT; k++)
         wide_store(e->kept[k] + l, kept[k]);
+    if (!turning)
+        return;
+    const wide3 more[] = {m->roll, m->drag};
+    for (int k = 0; k < 2; k++) {
+        wide_store(e->kept[KEPT + 3 * k] + l, more[k].x);
+        wide_store(e->kept[KEPT + 3 * k + 1] + l, more[k].y);
+        wide_store(e->kept[KEPT + 3 * k + 2] + l, more[k].z);
+    }
 }
 
-DEM_INLINE void put_momentum(soft_eight *e, size_t l, int side, wide3 force, wide3 moment, double kick, wide strain)
+DEM_INLINE void put_momentum(soft_eight *e, size_t l, int side, wide3 force, wide3 moment, double kick, wide strain,
+                             wide bound)
 {
     wide by = wide_all(kick);
     wide row[8] = {force.x * by,  force.y * by,  force.z * by, moment.x * by,
-                   moment.y * by, moment.z * by, strain,       wide_all(0)};
+                   moment.y * by, moment.z * by, strain,       bound * by};
     rows_store_next(e->momentum[side][l], DEM_ROW, row);
 }
 
@@ -424,8 +456,15 @@ DEM_INLINE void act_lanes(const dem_features f, soft_job *job, soft_eight *e, si
         return;
     soft_spot spot = load_spot(f, job, e, l);
     soft_whole s = soft_whole_of(&p, &sums, wide_load(e->depth + l));
-    soft_memory m = {kept3(e, 0, l), kept3(e, 3, l), wide_load(e->kept[6] + l), wide_load(e->kept[7] + l),
-                     wide_load(e->kept[8] + l)};
+    bool turning = job->kept_count > KEPT;
+    wide3 none = {wide_all(0), wide_all(0), wide_all(0)};
+    soft_memory m = {.spring = kept3(e, 0, l),
+                     .dash = kept3(e, 3, l),
+                     .roll = turning ? kept3(e, KEPT, l) : none,
+                     .drag = turning ? kept3(e, KEPT + 3, l) : none,
+                     .twist = wide_load(e->kept[6] + l),
+                     .patch = wide_load(e->kept[7] + l),
+                     .loss = wide_load(e->kept[8] + l)};
     soft_result r = soft_act(f, &spot, &p, &s, &m);
     wide power = wide_all(0), zero = power;
     if (f.moving && spot.wall)
@@ -434,16 +473,17 @@ DEM_INLINE void act_lanes(const dem_features f, soft_job *job, soft_eight *e, si
         put_records(job, e, l, &p, &s, &r, power);
         return;
     }
-    keep_memory(e, l, &m);
+    keep_memory(e, l, &m, turning);
     if (f.ledger) {
         tally_add(job->tally->friction, l, r.lost_friction);
         tally_add(job->tally->viscous, l, r.lost_viscous);
         tally_add(job->tally->work, l, wide_all(job->kick) * power);
     }
-    put_momentum(e, l, 0, r.force, r.moment, job->kick, r.strain_a);
+    put_momentum(e, l, 0, r.force, r.moment, job->kick, r.strain_a, r.bound);
     if (job->form < 0) {
         wide3 force = {zero - r.force.x, zero - r.force.y, zero - r.force.z};
-        put_momentum(e, l, 1, force, minus3(cross3(p.between, r.force), r.moment), job->kick, r.strain_b);
+        put_momentum(e, l, 1, force, minus3(cross3(p.between, r.force), r.moment), job->kick, r.strain_b,
+                     r.bound);
     }
     if (f.reaction && spot.wall) {
         wide_store(e->force[0] + l, r.force.x);
@@ -530,6 +570,8 @@ static void segment(dem_world *w, size_t which, int form, double kick, dem_soft_
     else
         find_patches(&job);
     sort_patches(&job);
+    if (w->soft.part)
+        dem_soft_couple(w, contacts, which, form, work, job.patches);
     if (f.reaction && form >= 0 && !records)
         clear_reactions(&job);
     for (size_t from = 0; from < job.patches; from += DEM_BLOCK_LANES)

@@ -29,6 +29,7 @@ typedef struct soft_side {
     wide inverse[6];       // inverse inertia in space: xx yy zz xy xz yz [1/(kg m^2)]
     wide brisk;            // 1 / its least mass [1/kg]
     wide quick;            // 1 / its least moment [1/(kg m^2)]
+    wide mean;             // of the inverse moments [1/(kg m^2)]
 } soft_side;
 
 /// A body's motion and inertia; `pose`: its row.
@@ -41,7 +42,8 @@ DEM_INLINE soft_side side_of(const dem_rows *rows, const uint32_t *body, const w
                    .spin = {motion[3], motion[4], motion[5]},
                    .inverse_mass = i[0],
                    .brisk = i[6],
-                   .quick = wide_max(i[1], wide_max(i[2], i[3]))};
+                   .quick = wide_max(i[1], wide_max(i[2], i[3])),
+                   .mean = (i[1] + i[2] + i[3]) * wide_all(1.0 / 3)};
     wide3 x = turned(pose + 3, (wide3){one, zero, zero}), y = turned(pose + 3, (wide3){zero, one, zero});
     wide3 z = cross3(x, y), ix = scale3(x, i[1]), iy = scale3(y, i[2]), iz = scale3(z, i[3]);
     s.inverse[0] = wide_fma(ix.x, x.x, wide_fma(iy.x, y.x, iz.x * z.x));

@@ -98,14 +98,14 @@ typedef struct dem_segment {
     bool dirty, fresh;   ///< dirty: to be rebuilt; fresh: the list has changed, and runs are not known yet (soft)
 } dem_segment;
 
-typedef struct dem_contacts {
+struct dem_contacts {
     dem_contact_columns columns;
     size_t capacity;  ///< of each column
     dem_segment *segments;
     uint32_t *slot_body;  ///< [slots] whose momentum a slot belongs to
     size_t slot_capacity;
     dem_soft_runs *runs;  ///< [segments] (soft)
-} dem_contacts;
+};
 
 /// Sphere pairs that a refresh has found, by thread.
 typedef struct dem_candidates {

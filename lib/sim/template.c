@@ -10,6 +10,8 @@
 static const double SMALLEST = 1e-18, LARGEST = 1e12;
 // how near to one sphere about its centre a clump must come to be one, relative to the radius and to the moments
 static const double CENTRED = 1e-12, ROUND = 1e-9;
+// a box so many times as long as it is thick is looked at: below, its look costs more than the pairs it saves
+static const double SLIM = 2;
 // moments that differ by rounding only
 static const double EQUAL = 1e-12;
 
@@ -128,6 +130,22 @@ static dem_ball sphere_of(const dem_template *t, const dem_ball *ball)
     return (dem_ball){t->to_run.w == 1 ? c : v3(c.y, c.z, c.x), ball->radius};
 }
 
+static void set_box(dem_template *t, const double (*rows)[4])
+{
+    double low[3], high[3];
+    for (int k = 0; k < 3; k++) {
+        low[k] = INFINITY, high[k] = -INFINITY;
+        for (size_t i = 0; i < t->count; i++) {
+            low[k] = fmin(low[k], rows[i][k] - rows[i][3]);
+            high[k] = fmax(high[k], rows[i][k] + rows[i][3]);
+        }
+    }
+    t->box_centre = v3((low[0] + high[0]) / 2, (low[1] + high[1]) / 2, (low[2] + high[2]) / 2);
+    t->box_half = v3((high[0] - low[0]) / 2, (high[1] - low[1]) / 2, (high[2] - low[2]) / 2);
+    double least = fmin(t->box_half.x, fmin(t->box_half.y, t->box_half.z));
+    t->slim = SLIM * least <= fmax(t->box_half.x, fmax(t->box_half.y, t->box_half.z));
+}
+
 static void set_spheres(dem_template *t, const form *f, double (*rows)[4])
 {
     double most = 0;
@@ -144,6 +162,7 @@ static void set_spheres(dem_template *t, const form *f, double (*rows)[4])
         t->radius_max = fmax(t->radius_max, b.radius);
         most = fmax(most, turning(b.centre, t->inverse_inertia));
     }
+    set_box(t, (const double(*)[4])rows);
     t->least_mass = most > 0 ? 1 / (t->inverse_mass + most) : t->mass;
 }
 

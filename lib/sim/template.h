@@ -25,6 +25,8 @@ typedef struct dem_template {
     uint32_t float_first, float_padded;     ///< places in the columns, both multiples of DEM_TEMPLATE_PAD
     double radius_out;                      ///< from the centre of mass to the farthest point of the surface [m]
     double radius_min, radius_max;          ///< of the spheres [m]
+    dem_vec3 box_centre, box_half;          ///< of the box along the axes that holds the spheres, and its half edges [m]
+    bool slim;                              ///< the box is much smaller than the ball: it tells more of what is near
     double volume;                          ///< that the mass stands for [m^3]
     double equivalent_diameter;             ///< of the sphere with the grain's volume; of a disc its own [m]
     bool flat;                              ///< a disc: bodies keep its thickness, so that masses go by s^2

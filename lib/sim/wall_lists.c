@@ -45,22 +45,21 @@ static dem_contact_item wall_item(const dem_world *w, size_t row, uint32_t spher
                               .law = w->laws.table[material * w->laws.material_count + w->walls.items[wall].material]};
 }
 
-// the spheres of the body that are nearer to a plane or cylinder than the margin; returns the slack
-static double look_at_smooth(wall_look *look, size_t row, uint32_t wall, double margin)
+// those of one part that are nearer than the margin; lowers `slack`
+static void look_at_part(wall_look *look, size_t row, uint32_t wall, double margin, uint32_t part, double *slack)
 {
     const dem_world *w = look->w;
     const dem_template *shape = &w->templates.items[w->bodies.shape[row]];
     dem_vec3 x = body_position(&w->bodies, row);
-    double apart = dem_wall_distance(&w->walls, wall, x) - w->bodies.radius[row], slack = INFINITY;
-    if (apart > margin)
-        return apart;
     dem_quat q = body_orientation(&w->bodies, row);
     double scale = body_scale(&w->bodies, row);
     bool plane = w->walls.items[wall].form == DEM_FORM_PLANE;
-    double level = apart + w->bodies.radius[row];
+    double level = plane ? dem_wall_distance(&w->walls, wall, x) : 0;
     const double *n = w->walls.rows + DEM_WALL_ROW * wall;
     dem_vec3 rise = plane ? v3_scale(quat_unrotate(q, v3(n[0], n[1], n[2])), scale) : v3(0, 0, 0);
     for (uint32_t i = shape->first; i < shape->first + shape->count; i++) {
+        if (soft_part(&w->soft, i) != part)
+            continue;
         const double *s = w->templates.spheres[i];
         dem_vec3 own = v3(s[0], s[1], s[2]);
         if (!plane)
@@ -71,8 +70,21 @@ static double look_at_smooth(wall_look *look, size_t row, uint32_t wall, double 
             add_item(look, &item);
             gap = margin;
         }
-        slack = smaller(slack, gap);
+        *slack = smaller(*slack, gap);
     }
+}
+
+// the spheres of the body that are nearer to a plane or cylinder than the margin, part by part; returns the slack
+static double look_at_smooth(wall_look *look, size_t row, uint32_t wall, double margin)
+{
+    const dem_world *w = look->w;
+    uint32_t parts = w->soft.parts ? w->soft.parts[w->bodies.shape[row]] : 1;
+    double apart = dem_wall_distance(&w->walls, wall, body_position(&w->bodies, row)) - w->bodies.radius[row];
+    double slack = INFINITY;
+    if (apart > margin)
+        return apart;
+    for (uint32_t part = 0; part < parts; part++)
+        look_at_part(look, row, wall, margin, part, &slack);
     return slack;
 }
 
@@ -116,18 +128,32 @@ static void take_springs(const dem_contacts *contacts, const dem_segment *s, siz
     }
 }
 
-// what the first one at each wall remembers stands for all
-static void take_soft_springs(const dem_contacts *contacts, const dem_segment *s, size_t k, size_t end,
-                              dem_contact_item *items, size_t count)
+static bool comes_before(const dem_soft *soft, uint32_t wall, uint32_t sphere, const dem_contact_item *item)
+{
+    if (wall != item->sphere_b)
+        return wall < item->sphere_b;
+    return soft_part(soft, sphere) < soft_part(soft, item->sphere_a);
+}
+
+// what the first one of each part at each wall remembers stands for all
+static void take_soft_springs(const dem_soft *soft, const dem_contacts *contacts, const dem_segment *s, size_t k,
+                              size_t end, dem_contact_item *items, size_t count)
 {
     const dem_contact_columns *c = &contacts->columns;
     for (size_t i = 0; i < count; i++) {
-        if (i > 0 && items[i].sphere_b == items[i - 1].sphere_b)
+        if (i > 0 && !comes_before(soft, items[i - 1].sphere_b, items[i - 1].sphere_a, &items[i]))
             continue;
-        while (k < end && c->sphere_b[segment_place(s, k)] < items[i].sphere_b)
-            k++;
-        if (k < end && c->sphere_b[segment_place(s, k)] == items[i].sphere_b)
-            items[i].history = dem_history_get(c, segment_place(s, k));
+        size_t at = 0;
+        for (; k < end; k++) {
+            at = segment_place(s, k);
+            if (!comes_before(soft, c->sphere_b[at], c->sphere_a[at], &items[i]))
+                break;
+        }
+        if (k < end && c->sphere_b[at] == items[i].sphere_b &&
+            soft_part(soft, c->sphere_a[at]) == soft_part(soft, items[i].sphere_a)) {
+            items[i].history = dem_history_get(c, at);
+            items[i].old = (uint32_t)(at - s->begin) + 1;
+        }
     }
 }
 
@@ -217,9 +243,10 @@ static void look_at_form(wall_look *look, size_t segment, dem_wall_form form, co
         if (looked[row - rows]) {
             size_t touches = list.touches.count;
             look_at_body(look, row, &list, &slack[row - rows]);
-            if (look->count > begin)
-                (w->features.soft && form != DEM_FORM_MESH ? take_soft_springs : take_springs)(
-                    contacts, s, from, old, look->items + begin, look->count - begin);
+            if (look->count > begin && w->features.soft && form != DEM_FORM_MESH)
+                take_soft_springs(&w->soft, contacts, s, from, old, look->items + begin, look->count - begin);
+            else if (look->count > begin)
+                take_springs(contacts, s, from, old, look->items + begin, look->count - begin);
             if (form == DEM_FORM_MESH && !look->failed)
                 look->failed |= !dem_mesh_touch_remember(&w->mesh_touches[segment], &list.touches, touches);
         } else {

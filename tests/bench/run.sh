@@ -54,9 +54,9 @@ once() {
     [ "$3" != 1 ] || busy=$(awk '{ b = $4 > 0.2 ? ($2 + $3) / $4 : 1; print b < 1 ? b : 1 }' usage)
 }
 
-# settle SCENE BED STEPS: lets a scene come to rest; its bodies are then BED.csv
+# settle SCENE BED STEPS [VISCOUS]: lets a scene come to rest; its bodies are then BED.csv
 settle() {
-    "$run" "$1" -q -j 1 --steps "$3" -D damping.viscous=5 -o settled
+    "$run" "$1" -q -j 1 --steps "$3" -D damping.viscous="${4:-5}" -o settled
     mv settled/final.csv "$2.csv"
 }
 
@@ -206,11 +206,13 @@ scanned() {
     time_row "$1" "${2#*-}" s.json
 }
 
-rods() {
-    write_scene s.json "$(shape_of rod 20)" "$(fill 1000 "0, 0, 0" "0.06, 0.06, 0.25")" "$(box 0.06 0.06)"
-    settle s.json rods 20000
-    write_scene s.json "$(shape_of rod 20)" '{ "file": "rods.csv" }' "$(box 0.06 0.06)"
-    time_row "$1" 20 s.json
+# slim NAME KIND K: rods or plates; what has fallen still turns for long
+slim() {
+    write_scene s.json "$(shape_of "$2" "$3")" "$(fill 1000 "0, 0, 0" "0.06, 0.06, 0.25")" "$(box 0.06 0.06)"
+    settle s.json slim 20000
+    write_scene s.json "$(shape_of "$2" "$3")" '{ "file": "slim.csv" }' "$(box 0.06 0.06)"
+    settle s.json slim 20000 40
+    time_row "$1" "$3" s.json
 }
 
 # a twentieth of the room is grains, at 1 m/s each
@@ -326,7 +328,8 @@ row "hertz-mindlin k=8" hertzian
 row "smooth cone k=8" in_funnel smooth
 row "mesh cone k=8" in_funnel mesh
 row "dilute gas k=8" gas
-row "rods of 20, 10 : 1" rods
+row "rods of 20, 10 : 1" slim rod 20
+row "plates of 25, 5 : 5 : 1" slim plate 25
 row "scanned grain, 50 spheres" scanned worn-50
 if [ -z "$quick" ]; then
     row "settling k=50" settling 50

@@ -4,13 +4,15 @@
 density=2500 stiffness=1e4 friction=0.5 damping_rate=2598.99303 step=1e-5
 slide_stiffness=2857.14286 slide_damping_rate=1299.49651
 
-# spheres_of ellipsoid|rod|ball K: lines x y z r of a grain [m]
+# spheres_of ellipsoid|rod|plate|ball K: lines x y z r of a grain [m]
 spheres_of() {
     awk -v kind="$1" -v k="$2" 'BEGIN {
         a = 5e-3; b = 3.5e-3; c = 3e-3; pi = atan2(0, -1); rod = 1e-3
         r = k < 4 ? 3e-3 : k < 8 ? 2.4e-3 : k < 20 ? 2e-3 : k < 50 ? 1.5e-3 : k < 100 ? 1e-3 : 8e-3 / sqrt(k)
         if (kind == "rod")
             for (i = 0; i < k; i++) printf "%.9g 0 0 %.9g\n", 18 * rod * ((i + 0.5) / k - 0.5), rod
+        else if (kind == "plate")
+            for (i = 0; i < k; i++) printf "%.9g %.9g 0 %.9g\n", 2 * rod * (i % 5 - 2), 2 * rod * (int(i / 5) - 2), rod
         else if (kind == "ball" || k == 1)
             printf "0 0 0 %.9g\n", exp(log(a * b * c) / 3)
         else  # on a spiral, each with its outside on the ellipsoid
@@ -21,12 +23,13 @@ spheres_of() {
     }'
 }
 
-# body_of ellipsoid|rod|ball K: mass and principal moments [kg, kg m^2]
+# body_of ellipsoid|rod|plate|ball K: mass and principal moments [kg, kg m^2]
 body_of() {
     awk -v kind="$1" -v k="$2" -v density="$density" 'BEGIN {
         a = 5e-3; b = 3.5e-3; c = 3e-3; pi = atan2(0, -1)
         if (kind == "rod") { a = 1e-2 * sqrt(5 / 3); b = c = 1e-3 * sqrt(5 / 2) }
-        m = kind == "rod" ? density * pi * 1e-6 * 2e-2 : density * 4 / 3 * pi * a * b * c
+        if (kind == "plate") { a = b = 1e-2 * sqrt(5 / 12); c = 2e-3 * sqrt(5 / 12) }
+        m = kind == "plate" ? density * 2e-7 : kind == "rod" ? density * pi * 1e-6 * 2e-2 : density * 4 / 3 * pi * a * b * c
         if (k == 1) a = b = c = exp(log(a * b * c) / 3)
         printf "%.9g %.9g %.9g %.9g\n", m, m / 5 * (b * b + c * c), m / 5 * (a * a + c * c), m / 5 * (a * a + b * b)
     }'
@@ -35,7 +38,7 @@ body_of() {
 # shape_of KIND K: the grain as a shape of a scene; a name of shapes/clumps in place of KIND takes that, k is its own
 shape_of() {
     case $1 in
-    ellipsoid | rod | ball)
+    ellipsoid | rod | plate | ball)
         spheres_of "$1" "$2" | awk -v body="$(body_of "$1" "$2")" '
             BEGIN { split(body, m) }
             { s = s (NR > 1 ? ", " : "") sprintf("[%s, %s, %s, %s]", $1, $2, $3, $4) }

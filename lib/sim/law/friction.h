@@ -58,14 +58,6 @@ DEM_INLINE wide3 spring_turn(wide3 spring, wide3 n, wide turn)
     return along3(spring, turn, cross3(n, spring));
 }
 
-typedef struct friction_law {
-    wide3 force;                             ///< on the first body [N]
-    wide3 spring;                            ///< its length afterwards [m]
-    wide3 dash;                              ///< what of the force is not the spring's [N] (ledger)
-    wide lost;                               ///< dissipated by sliding since the last step [J] (ledger)
-    wide stiffness, old_stiffness, damping;  ///< of the spring, now and a step ago, and of the dashpot [N/m, N s/m]
-} friction_law;
-
 /// Friction coefficient at a tangential velocity.
 DEM_INLINE wide friction_coefficient(const dem_features f, const wide *law, wide3 slip)
 {
@@ -75,64 +67,90 @@ DEM_INLINE wide friction_coefficient(const dem_features f, const wide *law, wide
     return wide_fma(law[LAW_FRICTION_MORE], wide_exp(falls), law[LAW_FRICTION]);
 }
 
-/// `spring` has been turned; `slip` is the tangential velocity of the second surface over the first [m/s], `vn` that
-/// of separation; `step` the time since the last one [s]. Where the surfaces are `bonded`, there is no cap.
-DEM_INLINE friction_law friction(const dem_features f, const wide *law, const normal_law *n, wide reduced, wide overlap,
-                                 wide vn, const contact_mass *mass, wide3 spring, wide3 slip, wide step,
-                                 wide_mask on, wide_mask bonded)
+/// What friction would be without its cap, and what the cap leaves of it.
+typedef struct friction_trial {
+    wide3 slip;       ///< tangential velocity of the second surface over the first [m/s]
+    wide3 start;      ///< spring, turned with the contact [m]
+    wide3 stretched;  ///< the same with the slip of the step [m]
+    wide3 force;      ///< on the first body, without the cap [N]
+    wide part;        ///< that the cap leaves of the force; below 1 the contact slides [-]
+    wide cap2;        ///< square of the cap [N^2]
+    wide stiffness, old_stiffness, damping;  ///< of the spring, now and a step ago, and of the dashpot [N/m, N s/m]
+} friction_trial;
+
+/// `spring` has been turned; `vn` is the velocity of separation [m/s]. Where surfaces are `bonded`, there is no cap.
+DEM_INLINE friction_trial friction_try(const dem_features f, const wide *law, const law_step *s, const normal_law *n,
+                                       wide reduced, wide overlap, wide vn, const contact_mass *mass, wide3 spring,
+                                       wide3 slip, wide_mask bonded)
 {
-    wide zero = wide_all(0);
-    wide stiffness = law[LAW_SLIDE_STIFFNESS] + law[LAW_SLIDE_RATIO] * n->stiffness, old_stiffness = stiffness;
-    const wide3 start = spring;
+    friction_trial t = {.slip = slip, .start = spring, .damping = wide_all(0)};
+    t.stiffness = t.old_stiffness = law[LAW_SLIDE_STIFFNESS] + law[LAW_SLIDE_RATIO] * n->stiffness;
     if (f.mindlin) {
-        wide old_radius = radius_before(f, n, reduced, overlap, overlap + vn * step);
-        wide kept = old_radius / wide_max(n->radius, wide_all(1e-300));
-        stiffness = stiffness + law[LAW_SLIDE_HERTZ] * n->radius;
-        old_stiffness = old_stiffness + law[LAW_SLIDE_HERTZ] * old_radius;
+        wide old_radius = radius_before(f, n, reduced, overlap, overlap + vn * s->step);
+        wide kept = old_radius * n->per_radius;
+        if (f.jkr)
+            kept = old_radius / wide_max(n->radius, wide_all(1e-300));
+        t.stiffness = t.stiffness + law[LAW_SLIDE_HERTZ] * n->radius;
+        t.old_stiffness = t.old_stiffness + law[LAW_SLIDE_HERTZ] * old_radius;
         spring = scale3(spring, wide_max(law[LAW_KEEP_LEAST], wide_min(law[LAW_KEEP_MOST], kept)));
     }
-    const wide3 stretched = along3(spring, step, slip);
-    wide damping = zero;
+    t.stretched = along3(spring, s->step, slip);
+    // of the spring as it will be, which need not be waited for
+    wide more = t.stiffness * s->step;
     if (f.slide_damping) {
         if (f.rate)
-            damping = law[LAW_SLIDE_RATE] * mass->mass;
+            t.damping = law[LAW_SLIDE_RATE] * mass->mass;
+        wide zeta = s->slide_zeta, inverse;
+        if (f.restitution && !alike(f))
+            zeta = law[LAW_SLIDE_ZETA] * wide_root(t.stiffness, &inverse);
         if (f.restitution)
-            damping = wide_fma(law[LAW_SLIDE_ZETA] * wide_sqrt(stiffness), mass->root, damping);
+            t.damping = wide_fma(zeta, mass->root, t.damping);
+        more = more + t.damping;
     }
-    // of the spring as it will be, which need not be waited for
-    wide more = stiffness * step;
-    if (f.slide_damping)
-        more = more + damping;
-    wide3 force = along3(scale3(spring, stiffness), more, slip);
-
-    wide size2 = square3(force), cap = friction_coefficient(f, law, slip) * normal_grip(f, n);
+    t.force = along3(scale3(spring, t.stiffness), more, slip);
+    wide size2 = square3(t.force), cap = friction_coefficient(f, law, slip) * normal_grip(f, n);
     if (f.bonded)
         cap = wide_select(bonded, wide_all(1e150), cap);
     // as much more as the size has, so that nothing does not slide
-    wide cap2 = wide_fma(cap, cap, wide_all(1e-300));
-    wide_mask slides = wide_less(cap2, size2);
-    wide part = cap * wide_rsqrt(size2), per_stiffness = wide_all(1) / stiffness;
-    wide3 capped = scale3(force, part), left = capped;
+    t.cap2 = wide_fma(cap, cap, wide_all(1e-300));
+    t.part = wide_select(wide_less(t.cap2, size2), cap * wide_rsqrt(size2), wide_all(1));
+    return t;
+}
+
+typedef struct friction_law {
+    wide3 force;   ///< on the first body [N]
+    wide3 spring;  ///< its length afterwards [m]
+    wide3 dash;    ///< what of the force is not the spring's [N] (ledger)
+    wide lost;     ///< dissipated by sliding since the last step [J] (ledger)
+} friction_law;
+
+DEM_INLINE friction_law friction(const dem_features f, const wide *law, const law_step *s, const friction_trial *t,
+                                 wide_mask on)
+{
+    wide zero = wide_all(0), stiffness = t->stiffness, per_stiffness = s->per_slide;
+    if (!alike(f))
+        per_stiffness = wide_all(1) / stiffness;
+    wide3 force = scale3(t->force, t->part), left = force;
     if (f.slide_damping) {
         // What the spring keeps. With a restitution all it has: a dashpot behind a slider sees no slip. With a rate
         // what the dashpot leaves of the cap (as LAMMPS does). Beyond the cap, the capped force.
-        wide3 own = scale3(stretched, stiffness), rest = against3(capped, damping, slip);
+        wide3 own = scale3(t->stretched, stiffness), rest = against3(force, t->damping, t->slip);
         left = !f.rate ? own : !f.restitution ? rest : select3(wide_less(zero, law[LAW_SLIDE_RATE]), rest, own);
-        left = select3(wide_less(cap2, dot3(left, left)), capped, left);
+        left = select3(wide_less(t->cap2, dot3(left, left)), force, left);
     }
-    force = select3(slides, capped, force);
-    spring = select3(slides, scale3(left, per_stiffness), stretched);
+    wide3 spring = select3(wide_less(t->part, wide_all(1)), scale3(left, per_stiffness), t->stretched);
     wide3 none = {zero, zero, zero};
-    friction_law result = {or_zero3(on, force), or_zero3(on, spring), none, zero, stiffness, old_stiffness, damping};
+    friction_law result = {or_zero3(on, force), or_zero3(on, spring), none, zero};
     if (f.ledger) {
         // work of the mean force over the slip, less what the spring holds more than before
         if (f.mindlin) {
-            wide3 both = along3(scale3(result.spring, stiffness), old_stiffness, start);
-            wide held = stiffness * dot3(result.spring, result.spring) - old_stiffness * dot3(start, start);
-            result.lost = wide_all(0.5) * (step * dot3(both, slip) - held);
+            wide3 both = along3(scale3(result.spring, stiffness), t->old_stiffness, t->start);
+            wide held = stiffness * dot3(result.spring, result.spring) - t->old_stiffness * dot3(t->start, t->start);
+            result.lost = wide_all(0.5) * (s->step * dot3(both, t->slip) - held);
         } else {
             // the same for one stiffness: nothing where the spring has kept all
-            wide3 both = along3(result.spring, wide_all(1), start), gone = against3(stretched, wide_all(1), result.spring);
+            wide3 both = along3(result.spring, wide_all(1), t->start);
+            wide3 gone = against3(t->stretched, wide_all(1), result.spring);
             result.lost = wide_all(0.5) * stiffness * dot3(both, gone);
         }
         // while sliding, the dashpot has only what the cap leaves to it

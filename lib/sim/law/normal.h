@@ -12,10 +12,44 @@ typedef struct normal_law {
     wide stiffness;  ///< tangent of the spring [N/m]
     wide damping;    ///< of the dashpot [N s/m]
     wide radius;     ///< sqrt(R* overlap), of the contact [m] (Hertz only)
+    wide per_radius; ///< [1/m] (Hertz, not JKR)
     wide spread;     ///< d radius / d overlap [-] (JKR only)
     wide grip;       ///< force by which friction is measured: what JKR pulls counts twice at most [N] (JKR only)
     wide energy;     ///< of the spring [J] (JKR only)
 } normal_law;
+
+/// What laws take of the step: `step` since the last one [s].
+typedef struct law_step {
+    wide step, per_step;  ///< [s], [1/s]; at the start nothing has passed, and 1 / step is that of the step to come
+    wide rate;            ///< of the dashpot, for this step: see normal_damp [1/s] (rate)
+    // where stiffnesses are the law's alone: see alike
+    wide per_slide;               ///< 1 / tangential stiffness [m/N]
+    wide push_zeta, slide_zeta;   ///< z sqrt(stiffness), along the normal and tangential [sqrt(N/m)] (restitution)
+} law_step;
+
+/// Whether stiffnesses are the same for all contacts of a law.
+DEM_INLINE bool alike(const dem_features f)
+{
+    return f.linear && !f.young && !f.hertz && !f.jkr && !f.mindlin;
+}
+
+DEM_INLINE law_step law_step_of(const dem_features f, const wide *law, double last_step, double next_step)
+{
+    wide step = wide_all(last_step), one = wide_all(1);
+    law_step s = {.step = step, .per_step = wide_all(1 / (last_step > 0 ? last_step : next_step))};
+    if (f.rate)
+        s.rate = law[LAW_RATE] / wide_fma(wide_all(0.25) * step, law[LAW_RATE], one);
+    if (!alike(f))
+        return s;
+    wide slide = law[LAW_SLIDE_STIFFNESS] + law[LAW_SLIDE_RATIO] * law[LAW_STIFFNESS];
+    if (f.friction)
+        s.per_slide = one / slide;
+    if (f.restitution)
+        s.push_zeta = law[LAW_ZETA] * wide_sqrt(law[LAW_STIFFNESS]);
+    if (f.restitution && f.friction)
+        s.slide_zeta = law[LAW_SLIDE_ZETA] * wide_sqrt(slide);
+    return s;
+}
 
 /// The mass that a contact sees.
 typedef struct contact_mass {
@@ -45,7 +79,7 @@ DEM_INLINE normal_law normal_elastic(const dem_features f, const wide *law, cons
                                      wide reduced, wide area_length)
 {
     wide zero = wide_all(0);
-    normal_law n = {zero, zero, zero, zero, zero, zero, zero, zero};
+    normal_law n = {zero, zero, zero, zero, zero, zero, zero, zero, zero};
     if (f.linear) {
         n.stiffness = law[LAW_STIFFNESS];
         if (f.young)
@@ -63,7 +97,7 @@ DEM_INLINE normal_law normal_elastic(const dem_features f, const wide *law, cons
         // pull-off 3/2 pi w R*
         n.grip = wide_all(1.5) * law[LAW_JKR] * reduced;
     } else if (f.hertz) {
-        n.radius = wide_sqrt(reduced * wide_max(overlap, zero));
+        n.radius = wide_root(reduced * wide_max(overlap, zero), &n.per_radius);
         wide tangent = law[LAW_HERTZ] * n.radius;
         n.elastic = n.elastic + wide_all(2.0 / 3) * (tangent * overlap);
         n.stiffness = n.stiffness + tangent;
@@ -84,7 +118,8 @@ DEM_INLINE wide radius_before(const dem_features f, const normal_law *n, wide re
     if (f.jkr)
         // by its slope, which has no bound where surfaces part
         return wide_max(wide_min(wide_fma(n->spread, before - overlap, n->radius), n->radius + n->radius), wide_all(0));
-    return wide_sqrt(reduced * wide_max(before, wide_all(0)));
+    wide inverse;
+    return wide_root(reduced * wide_max(before, wide_all(0)), &inverse);
 }
 
 /// Dashpot on the velocity `vn` of separation half a step ago [m/s].
@@ -93,23 +128,26 @@ DEM_INLINE wide radius_before(const dem_features f, const normal_law *n, wide re
 /// of one of m, whose damping ratio is larger by 1 + c h / 4 m: c is smaller by that. And the first force counts for a
 /// whole step, wherever in the step the contact has begun: with s = overlap / (h |vn|), the steps since then, it is
 /// weighed by 3/2 s up to s = 1 and then by 2 - s / 2 down to 1, which has no jumps and sums up to the time that has
-/// passed. Likewise at the end of a contact that may pull. `per_step`: 1 / h.
-DEM_INLINE void normal_damp(const dem_features f, const wide *law, normal_law *n, const contact_mass *m, wide overlap,
-                            wide vn, wide step, wide per_step)
+/// passed. Likewise at the end of a contact that may pull.
+DEM_INLINE void normal_damp(const dem_features f, const wide *law, const law_step *s, normal_law *n,
+                            const contact_mass *m, wide overlap, wide vn)
 {
     // by a rate, c / m is a number of the law; in a scene that has both, each contact has one of them
-    wide c = wide_all(0), quarter = wide_all(0.25) * step;
+    wide c = wide_all(0), quarter = wide_all(0.25) * s->step;
     if (f.rate) {
         n->damping = law[LAW_RATE] * m->mass;
-        c = law[LAW_RATE] / wide_fma(quarter, law[LAW_RATE], wide_all(1)) * m->mass;
+        c = s->rate * m->mass;
     }
     if (f.restitution) {
-        wide own = law[LAW_ZETA] * wide_sqrt(n->stiffness) * m->root;
+        wide zeta = s->push_zeta, inverse;
+        if (!alike(f))
+            zeta = law[LAW_ZETA] * wide_root(n->stiffness, &inverse);
+        wide own = zeta * m->root;
         n->damping = n->damping + own;
         c = c + own / wide_fma(quarter, own * m->inverse, wide_all(1));
     }
     if (f.rate || f.restitution) {
-        wide speed = wide_abs(vn), gone = overlap * per_step;
+        wide speed = wide_abs(vn), gone = overlap * s->per_step;
         wide acts = wide_max(speed, wide_fma(wide_all(-0.5), gone, speed + speed));
         acts = wide_min(wide_all(1.5) * gone, acts);
         wide leaves = f.cut ? wide_select(wide_less(law[LAW_FLOOR], wide_all(0)), acts, vn) : acts;
