@@ -40,7 +40,7 @@ typedef struct finding {
     bool failed;
 } finding;
 
-/// Kept from one search to the next, as fresh memory would cost more than the search.
+/// Little is kept from one search to the next, as columns and lists of pairs would be a sixth of all memory.
 struct dem_search {
     dem_world *w;
     level levels[LEVELS];
@@ -56,7 +56,7 @@ struct dem_search {
     int parts;
     near_pair *near;  // of all parts: the only one's, or joined
     near_pair *joined, *sorted;
-    size_t near_count, joined_capacity, sorted_capacity;
+    size_t near_count;
     uint32_t *first;  // [bodies + 1] of the pairs to come
 };
 typedef struct dem_search search;
@@ -151,40 +151,57 @@ dem_status dem_search_create(dem_world *w, dem_error *error)
     search *s = w->search = dem_alloc_zero(1, sizeof *s);
     if (!s)
         return dem_fail_memory(error);
-    size_t n = w->bodies.count, room = n + 2 * DEM_WIDTH_FLOAT + 32;
+    size_t n = w->bodies.count;
     s->w = w;
     for (size_t i = 0; i < w->templates.count; i++)
         s->slim |= w->templates.items[i].slim;
+    s->parts = n > BODIES_TO_SHARE ? w->threads : 1;
+    s->findings = dem_alloc_zero((size_t)s->parts, sizeof *s->findings);
+    s->moved = dem_alloc_zero(w->periodic ? 3 * n + 3 : 0, sizeof *s->moved);
+    s->first = dem_alloc_zero(n + 1, sizeof *s->first);
+    return s->first && s->findings && s->moved ? DEM_OK : dem_fail_memory(error);
+}
+
+static bool make_columns(search *s)
+{
+    size_t n = s->w->bodies.count, room = n + 2 * DEM_WIDTH_FLOAT + 32;
     s->x = dem_alloc_zero(room, sizeof *s->x);
     s->y = dem_alloc_zero(room, sizeof *s->y);
     s->z = dem_alloc_zero(room, sizeof *s->z);
     s->r = dem_alloc_zero(room, sizeof *s->r);
     s->id = dem_alloc_zero(room, sizeof *s->id);
     s->cell = dem_alloc(n + 1, sizeof *s->cell);
-    s->parts = n > BODIES_TO_SHARE ? w->threads : 1;
-    s->findings = dem_alloc_zero((size_t)s->parts, sizeof *s->findings);
-    bool found = s->findings;
-    for (int i = 0; found && i < s->parts; i++)
-        found = (s->findings[i].found = dem_alloc(2 * room, sizeof *s->findings[i].found)) != NULL;
     s->level_of = dem_alloc(n + 1, sizeof *s->level_of);
-    s->moved = dem_alloc_zero(w->periodic ? 3 * n + 3 : 0, sizeof *s->moved);
-    s->first = dem_alloc_zero(n + 1, sizeof *s->first);
-    bool good = s->first && s->x && s->y && s->z && s->r && s->id && s->cell && found && s->level_of && s->moved;
-    return good ? DEM_OK : dem_fail_memory(error);
+    bool good = s->x && s->y && s->z && s->r && s->id && s->cell && s->level_of;
+    for (int i = 0; good && i < s->parts; i++)
+        good = (s->findings[i].found = dem_alloc(2 * room, sizeof *s->findings[i].found)) != NULL;
+    return good;
+}
+
+static void release_columns(search *s)
+{
+    for (int i = 0; s->findings && i < s->parts; i++) {
+        free(s->findings[i].found);
+        free(s->findings[i].near);
+        s->findings[i] = (finding){0};
+    }
+    void *all[] = {s->x, s->y, s->z, s->r, s->id, s->cell, s->level_of, s->joined, s->sorted};
+    for (size_t i = 0; i < sizeof all / sizeof *all; i++)
+        free(all[i]);
+    s->x = s->y = s->z = s->r = NULL;
+    s->id = s->cell = NULL;
+    s->level_of = NULL;
+    s->near = s->joined = s->sorted = NULL;
 }
 
 void dem_search_destroy(dem_search *s)
 {
     if (!s)
         return;
-    for (int i = 0; s->findings && i < s->parts; i++) {
-        free(s->findings[i].found);
-        free(s->findings[i].near);
-    }
-    void *all[] = {s->x,        s->y,        s->z,     s->r,      s->id,     s->cell,
-                   s->findings, s->level_of, s->moved, s->joined, s->sorted, s->first};
-    for (size_t i = 0; i < sizeof all / sizeof *all; i++)
-        free(all[i]);
+    release_columns(s);
+    free(s->findings);
+    free(s->moved);
+    free(s->first);
     for (int i = 0; i < LEVELS; i++)
         free(s->levels[i].start);
     free(s);
@@ -302,18 +319,6 @@ static size_t look_around(const search *s, const level *l, dem_vec3 x, double re
     return job.count;
 }
 
-// memory for `count` items, whose old content is not needed
-static bool make_room(void *array, size_t *capacity, size_t count, size_t size)
-{
-    void **p = array;
-    if (count <= *capacity && *p)
-        return true;
-    free(*p);
-    *capacity = count + count / 8;
-    *p = dem_alloc(*capacity, size);
-    return *p != NULL;
-}
-
 static bool boxes_apart(const search *s, uint32_t a, uint32_t b, uint32_t image)
 {
     const dem_world *w = s->w;
@@ -397,8 +402,6 @@ static void look_part(void *user, int part)
     if (part >= s->parts)
         return;
     finding *f = &s->findings[part];
-    f->count = 0;
-    f->failed = false;
     for (size_t i = part_begin(s, part); i < part_begin(s, part + 1) && !f->failed; i++)
         f->failed = !body_absent(&s->w->bodies, i) && !look_from(s, f, (uint32_t)i);
 }
@@ -424,9 +427,9 @@ static dem_status look_from_all(search *s, dem_error *error)
     s->near = s->findings[0].near;
     if (s->parts == 1)
         return DEM_OK;
-    if (!make_room(&s->joined, &s->joined_capacity, s->near_count, sizeof *s->joined))
+    s->near = s->joined = dem_alloc(s->near_count, sizeof *s->joined);
+    if (!s->joined)
         return dem_fail_memory(error);
-    s->near = s->joined;
     size_t at = 0;
     for (int i = 0; i < s->parts; i++) {
         if (s->findings[i].count)
@@ -472,7 +475,7 @@ static dem_status sort_near(search *s, uint32_t *first, const near_pair **sorted
     for (size_t i = 0; i < n; i++)
         first[i + 1] += first[i];
     if (s->level_count > 1 || s->w->periodic) {
-        if (!make_room(&s->sorted, &s->sorted_capacity, s->near_count, sizeof *s->sorted))
+        if (!(s->sorted = dem_alloc(s->near_count, sizeof *s->sorted)))
             return dem_fail_memory(error);
         for (size_t i = 0; i < s->near_count; i++)
             s->sorted[first[s->near[i].a]++] = s->near[i];
@@ -708,9 +711,13 @@ dem_status dem_broad_search(dem_world *w, dem_error *error)
     if (w->periodic)
         dem_bodies_wrap(w, s->moved);
     w->skin = skin_now(w);
-    DEM_TRY(build_grids(s, error));
-    DEM_TRY(look_from_all(s, error));
-    DEM_TRY(replace_pairs(s, error));
+    dem_status status = make_columns(s) ? build_grids(s, error) : dem_fail_memory(error);
+    if (status == DEM_OK)
+        status = look_from_all(s, error);
+    if (status == DEM_OK)
+        status = replace_pairs(s, error);
+    release_columns(s);
+    DEM_TRY(status);
     for (size_t i = 0; i < w->bodies.count; i++) {
         memcpy(w->bodies.then + 3 * i, body_pose(&w->bodies, i), 3 * sizeof *w->bodies.then);
         w->bodies.search_limit[i] = w->bodies.path[i] + w->skin / 2;

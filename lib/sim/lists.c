@@ -154,12 +154,8 @@ static dem_status look(dem_world *w, dem_error *error)
     DEM_TRY(dem_refresh(w, error));
     double t2 = dem_clock();
     DEM_TRY(dem_contacts_rebuild(w, error));
-    // the first lists are of all pairs; later ones are of a few, and there are more who need the memory
-    if (w->fresh_count > w->bodies.count) {
-        free(w->fresh);
-        w->fresh = NULL;
-        w->fresh_capacity = w->fresh_count = 0;
-    }
+    if (w->fresh_count > w->bodies.count)
+        dem_refresh_forget(w);
     if (w->features.soft)
         DEM_TRY(dem_soft_reserve(w, error));
     double t3 = dem_clock();

@@ -62,6 +62,8 @@ static bool reserve(dem_candidates *c, size_t more)
 {
     if (c->count + more <= c->capacity)
         return true;
+    if (c->count + more > UINT32_MAX)
+        return false;  // 32 GB of them
     size_t capacity = (c->count + more) * 3 / 2 + 256;
     uint32_t *pairs = realloc(c->pairs, 2 * capacity * sizeof *pairs);
     if (!pairs)
@@ -104,7 +106,7 @@ static bool cull(const dem_world *w, dem_pair *p, dem_vec3 d, double margin, dem
             break;
     }
     memcpy(p->normal, job.normal, sizeof normal);
-    out->count = job.count;
+    out->count = (uint32_t)job.count;
     c->count += job.count;
     *slack = job.count == 0 && job.gap > margin ? job.gap : margin;
     return true;
@@ -152,14 +154,24 @@ static bool sort_by_parts(const dem_world *w, const dem_pair *p, dem_candidates 
     return true;
 }
 
+// in whatever order threads come
+static void lower_limit(dem_world *w, uint32_t row, double limit)
+{
+    double *at = &w->bodies.limit[row], seen;
+    __atomic_load(at, &seen, __ATOMIC_RELAXED);
+    while (limit < seen && !__atomic_compare_exchange(at, &seen, &limit, true, __ATOMIC_RELAXED, __ATOMIC_RELAXED))
+        continue;
+}
+
 // each body's share of the slack in proportion to its stride
-static void share_slack(dem_world *w, const dem_pair *p, double slack, double stride_a, double stride_b, dem_fresh *out)
+static void share_slack(dem_world *w, const dem_pair *p, double slack, double stride_a, double stride_b)
 {
     double even = 0.05 * (stride_a + stride_b) + 1e-30, share = (stride_a + even) / (stride_a + stride_b + 2 * even);
-    out->row[0] = p->a;
-    out->row[1] = p->b;
-    out->limit[0] = w->pairs.adjacency_limit[p->adjacent_a] = w->bodies.path[p->a] + slack * share;
-    out->limit[1] = w->pairs.adjacency_limit[p->adjacent_b] = w->bodies.path[p->b] + slack * (1 - share);
+    double limit_a = w->bodies.path[p->a] + slack * share, limit_b = w->bodies.path[p->b] + slack * (1 - share);
+    w->pairs.adjacency_limit[p->adjacent_a] = limit_a;
+    w->pairs.adjacency_limit[p->adjacent_b] = limit_b;
+    lower_limit(w, p->a, limit_a);
+    lower_limit(w, p->b, limit_b);
 }
 
 // writes of the pair and its limits, which no other thread has
@@ -172,7 +184,7 @@ static bool look_at_pair(dem_world *w, dem_fresh *fresh)
     double stride_a = body_stride(b, p->a, w->next_step), stride_b = body_stride(b, p->b, w->next_step);
     double margin = dem_refresh_margin(w, p->a, p->b, stride_a + stride_b) + w->ahead;
     double apart = v3_norm(d) * (1 - 1e-14) - b->radius[p->a] - b->radius[p->b], slack = apart;
-    fresh->begin = c->count;
+    fresh->begin = (uint32_t)c->count;
     fresh->count = 0;
     if (apart < margin) {
         bool both_centred = w->templates.items[b->shape[p->a]].centred && w->templates.items[b->shape[p->b]].centred;
@@ -194,10 +206,12 @@ static bool look_at_pair(dem_world *w, dem_fresh *fresh)
     }
     if (w->soft.part && !sort_by_parts(w, p, c, fresh))
         return false;
-    share_slack(w, p, slack - w->ahead, stride_a, stride_b, fresh);
+    share_slack(w, p, slack - w->ahead, stride_a, stride_b);
     fresh->changed = !same_candidates(w, p, fresh);
-    if (!fresh->changed)
+    if (!fresh->changed) {
         c->count = fresh->begin;
+        w->pairs.fresh[fresh->pair] = 0;
+    }
     return true;
 }
 
@@ -273,20 +287,6 @@ static bool collect_expired(dem_world *w)
     return true;
 }
 
-static void apply(dem_world *w, dem_fresh *fresh, size_t index)
-{
-    for (int k = 0; k < 2; k++) {
-        double *limit = &w->bodies.limit[fresh->row[k]];
-        *limit = smaller(*limit, fresh->limit[k]);
-    }
-    if (fresh->changed) {
-        dem_segment *s = &w->contacts.segments[fresh->row[0] / DEM_SEGMENT];
-        fresh->next = s->changed;
-        s->changed = (uint32_t)index + 1;
-    } else
-        w->pairs.fresh[fresh->pair] = 0;
-}
-
 // what the looks to come will wait for: first the pair, then its bodies and its contacts' segment
 static void fetch(const dem_world *w, size_t k, size_t end)
 {
@@ -317,7 +317,7 @@ static void look_at_part(void *user, int part)
     size_t end = count * ((size_t)part + 1) / parts;
     for (size_t i = count * (size_t)part / parts; i < end && !c->failed; i++) {
         fetch(w, i, end);
-        w->fresh[i].thread = (uint32_t)part;
+        w->fresh[i].thread = (uint16_t)part;
         c->failed = !look_at_pair(w, &w->fresh[i]);
     }
 }
@@ -332,6 +332,22 @@ dem_status dem_refresh(dem_world *w, dem_error *error)
         if (w->candidates[part].failed)
             return dem_fail_memory(error);
     for (size_t i = 0; i < w->fresh_count; i++)
-        apply(w, &w->fresh[i], i);
+        if (w->fresh[i].changed) {
+            dem_segment *s = &w->contacts.segments[w->pairs.items[w->fresh[i].pair].a / DEM_SEGMENT];
+            w->fresh[i].next = s->changed;
+            s->changed = (uint32_t)i + 1;
+        }
     return DEM_OK;
+}
+
+void dem_refresh_forget(dem_world *w)
+{
+    for (int t = 0; w->candidates && t < w->threads; t++) {
+        free(w->candidates[t].pairs);
+        free(w->candidates[t].expired);
+        w->candidates[t] = (dem_candidates){.work = w->candidates[t].work};
+    }
+    free(w->fresh);
+    w->fresh = NULL;
+    w->fresh_capacity = w->fresh_count = 0;
 }

@@ -117,13 +117,14 @@ typedef struct dem_candidates {
     bool failed;
 } dem_candidates;
 
+/// A pair that is looked at: all are at the first lists, so it is small.
 typedef struct dem_fresh {
-    uint32_t pair, thread;
-    size_t begin, count;  ///< in the candidates of `thread`
-    uint32_t row[2];      ///< its bodies, and their paths at which it is looked at again [m]
-    double limit[2];
-    bool changed;   ///< the set of candidates is another one
-    uint32_t next;  ///< 1 + index of the one before that changes the list of the same segment; 0: none
+    uint32_t pair;
+    uint32_t next;   ///< 1 + index of the one before that changes the list of the same segment; 0: none
+    uint32_t count;  ///< from `begin`, in the candidates of `thread`
+    uint16_t thread;
+    bool changed;  ///< the set of candidates is another one
+    uint32_t begin;
 } dem_fresh;
 
 typedef enum dem_pass {
