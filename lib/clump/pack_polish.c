@@ -75,7 +75,7 @@ static void project(const descent *d, double *vector)
 static void add_links(descent *d, const dem_ball *balls, double *value)
 {
     dem_packing *p = d->p;
-    size_t open = dem_pack_links(p, balls, d->count, dem_pack_spring_overlap, p->links);
+    size_t open = dem_pack_links(p, balls, d->count, dem_pack_spring_overlap);
     for (size_t k = 0; k < open; k++) {
         const dem_link *link = &p->links[k];
         dem_vec3 u = v3_unit(v3_sub(balls[link->i].centre, balls[link->j].centre));
