@@ -11,7 +11,7 @@
 #include "clump/pack_kernels.h"
 
 enum { MOST_INTERVALS = 6 };  // of a cover: a strip with more of them keeps all its balls
-enum { PARTS = DEM_LINE_LANES / DEM_WIDTH_FLOAT, WIDTH = DEM_WIDTH_FLOAT };  // a strip's lines are taken in so many parts
+enum { WIDTH = DEM_WIDTH_FLOAT, PARTS = DEM_LINE_LANES / WIDTH };  // of the lines of a strip, taken together
 
 static const float nowhere = 1e9f;
 static const float ramp[DEM_LINE_LANES] = {0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15};
@@ -95,8 +95,8 @@ typedef struct strip_place {
     float x, y;       ///< of the first line
 } strip_place;
 
-// The intervals of all balls on each line, their radii raised by `grow`; empty ones are inside out and far away. `begin`
-// gets where the first ones begin.
+// The intervals of all balls on each line, their radii raised by `grow`; empty ones are inside out and far away.
+// `begin` gets where the first ones begin.
 static void set_ends(const strip_place *place, float grow, strip_front *begin)
 {
     const dem_line_task *task = place->task;
@@ -185,7 +185,8 @@ static void compare_spans(const dem_line_field *field, uint32_t strip, const flo
     for (int p = 0; p < PARTS; p++) {
         widef before = widef_all(0), inside = widef_all(0), z = widef_load(end + p * WIDTH);
         for (uint32_t s = field->span[strip]; s < field->span[strip + 1]; s++) {
-            widef enter = widef_load(field->spans[s][0] + p * WIDTH), leave = widef_load(field->spans[s][1] + p * WIDTH);
+            widef enter = widef_load(field->spans[s][0] + p * WIDTH);
+            widef leave = widef_load(field->spans[s][1] + p * WIDTH);
             widef_mask in = widef_and(widef_below(enter, z), widef_below(z, leave));
             before = before + (widef_min(widef_max(z, enter), leave) - enter);
             inside = inside + widef_select(in, widef_all(1), widef_all(0));
@@ -303,9 +304,9 @@ static void keep(const float *ball, uint32_t lines, unsigned char *kept)
         kept[(uint32_t)ball[__builtin_ctz(lines)]] = 1;
 }
 
-// Moves `end` on as far as the balls reach, by as few of them as it takes, and keeps these: each goes on to the farthest
-// end of those that begin before the last one ends. Balls come by their centres, not by where they begin, so it may
-// stop early.
+// Moves `end` on as far as the balls reach, by as few of them as it takes, and keeps these: each goes on to the
+// farthest end of those that begin before the last one ends. Balls come by their centres, not by where they begin, so
+// it may stop early.
 static void chain_on(const dem_line_task *task, size_t count, strip_front *end)
 {
     const widef back = widef_all(-nowhere);
@@ -379,7 +380,8 @@ static bool is_covered(const strip_cover *cover, strip_ball ball, float step)
     uint32_t beyond = 0;
     for (int p = 0; p < PARTS; p++) {
         widef_mask meets;
-        widef half = half_length(ball, step, p, &meets), from = widef_all(ball.w) - half, to = widef_all(ball.w) + half;
+        widef half = half_length(ball, step, p, &meets);
+        widef from = widef_all(ball.w) - half, to = widef_all(ball.w) + half;
         uint32_t bits = widef_bits(meets);
         for (size_t m = 0; m < cover->count; m++)
             bits &= ~widef_bits(widef_and(widef_below(widef_load(cover->begin[m].at + p * WIDTH), from),
