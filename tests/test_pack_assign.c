@@ -160,7 +160,7 @@ static void open_links_are_one_less_than_pieces_and_closing_leaves_one(void **st
     open_fixture(&f, NULL, 1);
     for (int k = 0; k < 3; k++) {
         size_t pieces = dem_ball_pieces(f.state.balls, f.state.count, dem_pack_overlap, NULL);
-        size_t open = dem_pack_links(&f.p, f.state.balls, f.state.count, dem_pack_overlap, f.p.links);
+        size_t open = dem_pack_links(&f.p, f.state.balls, f.state.count, dem_pack_overlap);
         check(open + 1 == pieces);
         for (size_t i = 0; i < open; i++) {
             const dem_ball *a = &f.state.balls[f.p.links[i].i], *b = &f.state.balls[f.p.links[i].j];

@@ -62,7 +62,7 @@ static void one_ball_is_a_ball(void **state)
     check_vec(u.moments.first, v3(v, -2 * v, 3 * v), 1e-14);
     check_close(u.moments.second.yy, v * (4 + 0.49 / 5), 1e-15);
     check_close(u.moments.second.xz, v * 3, 1e-15);
-    check(u.pieces == 1 && u.redundant == 0 && u.arc_count == 0);
+    check(u.redundant == 0 && u.arc_count == 0);
     dem_ball_union_release(&u);
 }
 
@@ -86,7 +86,7 @@ static void two_overlapping_balls_lose_their_lens(void **state)
             sym3_add(sym3_scale(sym3_outer(axis), along - across), (dem_sym3){across, across, across, 0, 0, 0});
         check_moments(u.moments, want, 1e-12);
         check_close(u.area, 2 * DEM_PI * (r1 * (r1 + z0) + r2 * (r2 + d - z0)), 1e-12);
-        check(u.arc_count == 1 && u.pieces == 1);
+        check(u.arc_count == 1);
         check_near(u.arcs[0].end - u.arcs[0].begin, 2 * DEM_PI, 0);
         dem_ball_union_release(&u);
     }
@@ -330,7 +330,7 @@ static void touching_balls_do_not_overlap(void **state)
     dem_ball balls[3] = {{{0, 0, 0}, 1}, {{3, 0, 0}, 2}, {{3, 4, 0}, 2}};
     dem_ball_union u = compute(balls, 3);
     check_close(u.moments.volume, 4 * DEM_PI / 3 * 17, 1e-14);
-    check(u.pieces == 3);
+    check(dem_ball_pieces(balls, 3, 0, NULL) == 3);
     dem_ball_union_release(&u);
 }
 

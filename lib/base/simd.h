@@ -27,6 +27,7 @@ enum { DEM_WIDTH = 8, DEM_WIDTH_FLOAT = 16 };
 typedef __m512d wide;
 typedef __mmask8 wide_mask;
 typedef __m512 widef;
+typedef __mmask16 widef_mask;
 
 DEM_INLINE wide wide_all(double x)
 {
@@ -232,6 +233,30 @@ DEM_INLINE uint32_t widef_less(widef a, widef b)
 {
     return _mm512_cmp_ps_mask(a, b, _CMP_LT_OQ);
 }
+DEM_INLINE widef_mask widef_below(widef a, widef b)
+{
+    return _mm512_cmp_ps_mask(a, b, _CMP_LT_OQ);
+}
+DEM_INLINE widef_mask widef_up_to(widef a, widef b)
+{
+    return _mm512_cmp_ps_mask(a, b, _CMP_LE_OQ);
+}
+DEM_INLINE widef_mask widef_and(widef_mask a, widef_mask b)
+{
+    return a & b;
+}
+DEM_INLINE widef_mask widef_either(widef_mask a, widef_mask b)
+{
+    return a | b;
+}
+DEM_INLINE widef widef_select(widef_mask m, widef a, widef b)
+{
+    return _mm512_mask_blend_ps(m, b, a);
+}
+DEM_INLINE uint32_t widef_bits(widef_mask m)
+{
+    return m;
+}
 DEM_INLINE float widef_highest(widef a)
 {
     return _mm512_reduce_max_ps(a);
@@ -256,6 +281,7 @@ enum { DEM_WIDTH = 4, DEM_WIDTH_FLOAT = 8 };
 typedef __m256d wide;
 typedef __m256d wide_mask;
 typedef __m256 widef;
+typedef __m256 widef_mask;
 
 DEM_INLINE wide wide_all(double x)
 {
@@ -412,6 +438,30 @@ DEM_INLINE uint32_t widef_less(widef a, widef b)
 {
     return (uint32_t)_mm256_movemask_ps(_mm256_cmp_ps(a, b, _CMP_LT_OQ));
 }
+DEM_INLINE widef_mask widef_below(widef a, widef b)
+{
+    return _mm256_cmp_ps(a, b, _CMP_LT_OQ);
+}
+DEM_INLINE widef_mask widef_up_to(widef a, widef b)
+{
+    return _mm256_cmp_ps(a, b, _CMP_LE_OQ);
+}
+DEM_INLINE widef_mask widef_and(widef_mask a, widef_mask b)
+{
+    return _mm256_and_ps(a, b);
+}
+DEM_INLINE widef_mask widef_either(widef_mask a, widef_mask b)
+{
+    return _mm256_or_ps(a, b);
+}
+DEM_INLINE widef widef_select(widef_mask m, widef a, widef b)
+{
+    return _mm256_blendv_ps(b, a, m);
+}
+DEM_INLINE uint32_t widef_bits(widef_mask m)
+{
+    return (uint32_t)_mm256_movemask_ps(m);
+}
 DEM_INLINE float widef_highest(widef a)
 {
     __m128 h = _mm_max_ps(_mm256_castps256_ps128(a), _mm256_extractf128_ps(a, 1));
@@ -442,6 +492,7 @@ enum { DEM_WIDTH = 1, DEM_WIDTH_FLOAT = 1 };
 typedef double wide;
 typedef bool wide_mask;
 typedef float widef;
+typedef int32_t widef_mask;  // as wide as the numbers beside it
 
 DEM_INLINE wide wide_all(double x)
 {
@@ -583,6 +634,30 @@ DEM_INLINE widef widef_sqrt(widef a)
 DEM_INLINE uint32_t widef_less(widef a, widef b)
 {
     return a < b;
+}
+DEM_INLINE widef_mask widef_below(widef a, widef b)
+{
+    return a < b;
+}
+DEM_INLINE widef_mask widef_up_to(widef a, widef b)
+{
+    return a <= b;
+}
+DEM_INLINE widef_mask widef_and(widef_mask a, widef_mask b)
+{
+    return a & b;
+}
+DEM_INLINE widef_mask widef_either(widef_mask a, widef_mask b)
+{
+    return a | b;
+}
+DEM_INLINE widef widef_select(widef_mask m, widef a, widef b)
+{
+    return m ? a : b;
+}
+DEM_INLINE uint32_t widef_bits(widef_mask m)
+{
+    return m;
 }
 DEM_INLINE float widef_highest(widef a)
 {

@@ -129,7 +129,7 @@ static void masses_compare(const subject *s, const dem_ball_union *whole, dem_fi
     for (size_t i = 0; i < s->bodies.ball_count; i++)
         sum += 4 * DEM_PI / 3 * pow(s->balls[i].radius, 3);
     f->overlap_ratio = sum / balls.volume;
-    f->pieces = whole->pieces;
+    f->pieces = dem_ball_pieces(s->balls, s->bodies.ball_count, 0, NULL);
 }
 
 dem_status dem_fidelity_measure(const dem_ctx *ctx, const dem_mesh *mesh, const dem_ball *balls, size_t count,
@@ -146,6 +146,10 @@ dem_status dem_fidelity_measure(const dem_ctx *ctx, const dem_mesh *mesh, const 
     if (status != DEM_OK)
         goto done;
     masses_compare(&s, &boundary.whole, fidelity);
+    if (fidelity->pieces == 0) {
+        status = dem_fail_memory(error);
+        goto done;
+    }
     status = gap_measure(&s, boundary.whole.moments.volume, samples, threads, &fidelity->iou_gap, NULL, error);
     if (status != DEM_OK)
         goto done;

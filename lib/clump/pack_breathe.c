@@ -159,7 +159,7 @@ dem_status dem_pack_breathe(dem_packing *p, dem_pack_state *state, dem_error *er
     bool better;
     DEM_TRY(try_breath(p, state, &better, error));
     if (better && p->connected)
-        better = dem_pack_links(p, p->moved.balls, p->moved.count, dem_pack_overlap, p->links) == 0;
+        better = dem_pack_links(p, p->moved.balls, p->moved.count, dem_pack_overlap) == 0;
     if (better) {
         dem_pack_state old = *state;
         *state = p->moved;

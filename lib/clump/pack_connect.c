@@ -4,29 +4,37 @@
 
 #include "base/status.h"
 
-// Whatever moves by at most d changes an overlap by at most 2 d: so long the tree found last still holds together.
-static bool still_joined(const dem_packing *p, const dem_ball *balls, size_t count, double overlap)
+static double gap_between(const dem_ball *balls, const dem_link *link)
 {
-    if (count != p->tree_count || p->tree_overlap <= overlap)
-        return false;
-    double limit = (p->tree_overlap - overlap) / 2;
-    for (size_t i = 0; i < count; i++) {
-        const dem_ball *then = &p->tree_balls[i];
-        double move = v3_distance(balls[i].centre, then->centre) + fabs(balls[i].radius - then->radius);
-        if (!(move < limit))
-            return false;
-    }
-    return true;
+    const dem_ball *a = &balls[link->i], *b = &balls[link->j];
+    return v3_distance(a->centre, b->centre) - a->radius - b->radius;
 }
 
-size_t dem_pack_links(dem_packing *p, const dem_ball *balls, size_t count, double overlap, dem_link *links)
+// does the tree found last still hold all balls together?
+static bool still_joined(const dem_packing *p, const dem_ball *balls, size_t count, double overlap)
 {
+    bool joined = count == p->tree_count;
+    for (size_t k = 0; k + 1 < count && joined; k++)
+        joined = gap_between(balls, &p->tree[k]) + overlap <= 0;
+    return joined;
+}
+
+// the links that are open of balls whose tree was found last are asked for twice in a row
+static bool found_last(const dem_packing *p, const dem_ball *balls, size_t count, double overlap)
+{
+    return count == p->tree_count && overlap == p->tree_overlap &&
+           memcmp(balls, p->tree_balls, count * sizeof *balls) == 0;
+}
+
+size_t dem_pack_links(dem_packing *p, const dem_ball *balls, size_t count, double overlap)
+{
+    if (found_last(p, balls, count, overlap))
+        return p->link_count;
     if (still_joined(p, balls, count, overlap))
         return 0;
     dem_ball_columns *c = &p->tree_columns;
     float *reach = p->tree_reach;
-    double widest = -INFINITY;
-    size_t open = 0;
+    size_t edges = 0, open = 0;
     dem_ball_columns_set(c, balls, count);
     for (size_t i = 0; i < c->padded; i++)
         reach[i] = i < count ? 1e9f : -1e9f;
@@ -36,14 +44,15 @@ size_t dem_pack_links(dem_packing *p, const dem_ball *balls, size_t count, doubl
         joined = p->kernels->approach(c, (uint32_t)joined, reach, p->tree_nearest);
         if (joined < 0)
             break;
-        uint32_t i = (uint32_t)joined, j = (uint32_t)p->tree_nearest[joined];
-        double gap = v3_distance(balls[i].centre, balls[j].centre) - balls[i].radius - balls[j].radius;
-        widest = fmax(widest, gap);
-        if (gap + overlap > 0)
-            links[open++] = (dem_link){i, j, gap + overlap};
+        dem_link *edge = &p->tree[edges++];
+        *edge = (dem_link){(uint32_t)joined, (uint32_t)p->tree_nearest[joined], 0};
+        edge->gap = gap_between(balls, edge) + overlap;
+        if (edge->gap > 0)
+            p->links[open++] = *edge;
     }
     p->tree_count = count;
-    p->tree_overlap = -widest;
+    p->tree_overlap = overlap;
+    p->link_count = open;
     memcpy(p->tree_balls, balls, count * sizeof *balls);
     return open;
 }
@@ -53,7 +62,7 @@ double dem_pack_springs(dem_packing *p, const dem_pack_state *state, double (*eq
     if (!p->spring)
         return 0;
     double energy = 0;
-    size_t count = dem_pack_links(p, state->balls, state->count, dem_pack_spring_overlap, p->links);
+    size_t count = dem_pack_links(p, state->balls, state->count, dem_pack_spring_overlap);
     for (size_t k = 0; k < count; k++) {
         const dem_link *link = &p->links[k];
         double gap = link->gap;
@@ -88,10 +97,10 @@ bool dem_pack_close(dem_packing *p, dem_pack_state *state, double growth)
 {
     enum { ROUNDS = 20 };
     const double wanted = (dem_pack_overlap + dem_pack_spring_overlap) / 2;
-    if (!p->connected || !dem_pack_links(p, state->balls, state->count, dem_pack_overlap, p->links))
+    if (!p->connected || !dem_pack_links(p, state->balls, state->count, dem_pack_overlap))
         return false;
     for (int i = 0; i < ROUNDS; i++) {
-        size_t open = dem_pack_links(p, state->balls, state->count, wanted, p->links);
+        size_t open = dem_pack_links(p, state->balls, state->count, wanted);
         for (size_t k = 0; k < open; k++)
             close_link(state, &p->links[k], growth);
         if (!open)
@@ -105,7 +114,7 @@ dem_status dem_pack_join(dem_packing *p, dem_pack_state *state, dem_error *error
     enum { RELAXATIONS = 6 };
     double stiffness = p->stiffness;
     for (int i = 0; i < RELAXATIONS && p->connected; i++) {
-        if (!dem_pack_links(p, state->balls, state->count, dem_pack_overlap, p->links))
+        if (!dem_pack_links(p, state->balls, state->count, dem_pack_overlap))
             break;
         p->spring = true;
         DEM_TRY(dem_pack_relax(p, state, (dem_relax_options){15, 0.02, 0}, error));

@@ -11,8 +11,8 @@ typedef struct dem_link {
 } dem_link;
 
 /// The links of the minimum spanning tree whose balls overlap by less than `overlap`: one less than there are pieces
-/// with that overlap. `links` has room for count.
-size_t dem_pack_links(dem_packing *p, const dem_ball *balls, size_t count, double overlap, dem_link *links);
+/// with that overlap. They are put into p->links; returns their number.
+size_t dem_pack_links(dem_packing *p, const dem_ball *balls, size_t count, double overlap);
 /// Energy of the springs on those links; adds them to the normal equations unless NULL. 0 while p->spring is off.
 double dem_pack_springs(dem_packing *p, const dem_pack_state *state, double (*equations)[DEM_EQUATION]);
 /// Relaxes with springs, then dem_pack_close.

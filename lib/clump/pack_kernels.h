@@ -42,13 +42,18 @@ typedef struct dem_line_field {
     float (*spans)[2][DEM_LINE_LANES];  ///< enter and leave; a line with fewer spans than its strip has them far away
 } dem_line_field;
 
+/// The balls that each strip of a task needs.
+typedef struct dem_strip_lists {
+    uint32_t *start;         ///< [strips + 1] where those of a strip stand in `list`
+    uint32_t *list;          ///< of each strip by coordinate along the lines
+    size_t capacity;
+} dem_strip_lists;
+
 /// One share of the rows of a field.
 typedef struct dem_line_task {
     const dem_line_field *field;
     int32_t begin, end;      ///< rows
-    uint32_t *start;         ///< [strips + 1] of the balls that a strip needs, in `list`
-    uint32_t *list;          ///< of each strip by coordinate along the lines
-    size_t list_capacity;
+    dem_strip_lists wide, close;    ///< for large and for small moves of the balls; `close` is made from `wide`
     float uncovered, protruding;   ///< weights of what the union lacks and of what it has too much
     /// [balls] sums over the exposed ends of their intervals, with s = `protruding` for an end outside the grain and
     /// -`uncovered` for one inside, n the unit normal of the ball, w along the lines: s |n_w| r (n_u r, n_v r, n_w r, 1)
@@ -121,10 +126,11 @@ typedef struct dem_pack_kernels {
 
 typedef struct dem_line_kernels {
     /// Adds to `sums` if the gradient is wanted; sets `covered` and `common`.
-    void (*measure)(const dem_ball_columns *balls, dem_line_task *task, bool gradient);
-    /// Leaves out of the lists the balls that stay hidden while no ball changes by more than `slack`: the shift of its
-    /// centre and the change of its radius taken together.
-    void (*cull)(const dem_ball_columns *balls, dem_line_task *task, float slack);
+    void (*measure)(const dem_ball_columns *balls, dem_line_task *task, const dem_strip_lists *lists, bool gradient);
+    /// Leaves out of lists the balls that stay hidden while no ball changes by more than `slack`: the shift of its
+    /// centre and the change of its radius taken together. `to` has room for all; it may be `from`.
+    void (*cull)(const dem_ball_columns *balls, dem_line_task *task, const dem_strip_lists *from, dem_strip_lists *to,
+                 float slack);
 } dem_line_kernels;
 
 /// The best set this machine can run, or the named one (NULL: none such, or not usable here).

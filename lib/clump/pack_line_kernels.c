@@ -3,15 +3,18 @@
 // A strip meets some dozen to a hundred balls, and on each line only two or three of them end at the surface. A ball is
 // left out of a strip's list as long as no move within the slack can bring it to the surface: raised by the slack it
 // must lie in the union of others that are lowered by it, and these others stay in the list. So results are the same
-// with and without, to the last bit.
+// with and without, but for balls that end at the same place to the last bit: of these the first in the list counts.
 #include <string.h>
 
 #include "base/level.h"
+#include "base/simd.h"
 #include "clump/pack_kernels.h"
 
 enum { MOST_INTERVALS = 6 };  // of a cover: a strip with more of them keeps all its balls
+enum { WIDTH = DEM_WIDTH_FLOAT, PARTS = DEM_LINE_LANES / WIDTH };  // of the lines of a strip, taken together
 
 static const float nowhere = 1e9f;
+static const float ramp[DEM_LINE_LANES] = {0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15};
 
 /// A ball as a strip of lines sees it.
 typedef struct strip_ball {
@@ -30,126 +33,56 @@ static strip_ball strip_view(const dem_ball_columns *balls, int axis, uint32_t i
 /// One end of the union on each line of a strip, and whose end it is (an index into the strip's balls).
 typedef struct strip_front {
     float at[DEM_LINE_LANES];
-    int32_t ball[DEM_LINE_LANES];
+    float ball[DEM_LINE_LANES];
 } strip_front;
 
-static bool any_below(const float *restrict a, float limit)
+/// The same in registers.
+typedef struct front {
+    widef at[PARTS], ball[PARTS];
+} front;
+
+DEM_INLINE front front_load(const strip_front *f)
 {
-    int32_t any = 0;
-    for (int l = 0; l < DEM_LINE_LANES; l++)
-        any |= a[l] < limit;
-    return any;
+    front out;
+    for (int p = 0; p < PARTS; p++) {
+        out.at[p] = widef_load(f->at + p * WIDTH);
+        out.ball[p] = widef_load(f->ball + p * WIDTH);
+    }
+    return out;
 }
 
-static bool any_above(const float *restrict a, float limit)
+DEM_INLINE void front_store(strip_front *f, const front *in)
 {
-    int32_t any = 0;
-    for (int l = 0; l < DEM_LINE_LANES; l++)
-        any |= a[l] > limit;
-    return any;
-}
-
-// The interval of one ball on each line of a strip; empty ones are inside out and far away. Lowers `begin` to where it
-// begins.
-static void strip_ends(strip_ball ball, int32_t who, float step, float *restrict from, float *restrict to,
-                       strip_front *restrict begin)
-{
-    for (int l = 0; l < DEM_LINE_LANES; l++) {
-        float off = (float)l * step - ball.u, rest = ball.reach2 - off * off;
-        float half = sqrtf(rest > 0 ? rest : 0);
-        from[l] = rest > 0 ? ball.w - half : nowhere;
-        to[l] = rest > 0 ? ball.w + half : -nowhere;
-        begin->ball[l] = from[l] < begin->at[l] ? who : begin->ball[l];
-        begin->at[l] = from[l] < begin->at[l] ? from[l] : begin->at[l];
+    for (int p = 0; p < PARTS; p++) {
+        widef_store(f->at + p * WIDTH, in->at[p]);
+        widef_store(f->ball + p * WIDTH, in->ball[p]);
     }
 }
 
-static void front_nowhere(strip_front *front)
+// the lines whose bits are set
+DEM_INLINE uint32_t lines_of(const widef_mask *m)
 {
-    for (int l = 0; l < DEM_LINE_LANES; l++) {
-        front->at[l] = nowhere;
-        front->ball[l] = 0;
-    }
+    uint32_t bits = 0;
+    for (int p = 0; p < PARTS; p++)
+        bits |= widef_bits(m[p]) << (p * WIDTH);
+    return bits;
 }
 
-// moves the end of the union's interval on as far as the balls reach, seen in their order
-static void move_end(const dem_line_task *task, size_t count, strip_front *restrict end)
+static uint32_t lines_below(const float *a, float limit)
 {
-    float at[DEM_LINE_LANES];
-    int32_t ball[DEM_LINE_LANES];
-    memcpy(at, end->at, sizeof at);
-    memcpy(ball, end->ball, sizeof ball);
-    for (size_t j = 0; j < count; j++) {
-        const float *restrict from = task->from[j], *restrict to = task->to[j];
-        int32_t who = (int32_t)j;
-        for (int l = 0; l < DEM_LINE_LANES; l++) {
-            float t = from[l] <= at[l] ? to[l] : -nowhere;
-            ball[l] = t > at[l] ? who : ball[l];
-            at[l] = t > at[l] ? t : at[l];
-        }
-    }
-    memcpy(end->at, at, sizeof at);
-    memcpy(end->ball, ball, sizeof ball);
+    widef_mask m[PARTS];
+    for (int p = 0; p < PARTS; p++)
+        m[p] = widef_below(widef_load(a + p * WIDTH), widef_all(limit));
+    return lines_of(m);
 }
 
-// the lowest begin of an interval beyond `end`; false: it is not the end, a ball goes on from there
-static bool next_begin(const dem_line_task *task, size_t count, const strip_front *restrict end,
-                       strip_front *restrict begin)
+// half a ball's length on some lines, 0 where it does not meet them
+DEM_INLINE widef half_length(strip_ball ball, float step, int part, widef_mask *meets)
 {
-    float at[DEM_LINE_LANES], passed[DEM_LINE_LANES];
-    int32_t ball[DEM_LINE_LANES], on[DEM_LINE_LANES], any = 0;
-    memcpy(passed, end->at, sizeof passed);
-    for (int l = 0; l < DEM_LINE_LANES; l++) {
-        at[l] = nowhere;
-        ball[l] = on[l] = 0;
-    }
-    for (size_t j = 0; j < count; j++) {
-        const float *restrict from = task->from[j], *restrict to = task->to[j];
-        int32_t who = (int32_t)j;
-        for (int l = 0; l < DEM_LINE_LANES; l++) {
-            float f = from[l] > passed[l] ? from[l] : nowhere;
-            on[l] |= (from[l] <= passed[l]) & (to[l] > passed[l]);
-            ball[l] = f < at[l] ? who : ball[l];
-            at[l] = f < at[l] ? f : at[l];
-        }
-    }
-    for (int l = 0; l < DEM_LINE_LANES; l++)
-        any |= on[l];
-    memcpy(begin->at, at, sizeof at);
-    memcpy(begin->ball, ball, sizeof ball);
-    return !any;
-}
-
-// The end of the union's interval that begins at `begin`, and where the next one begins. Balls come by their centres
-// along the lines, so one pass reaches the end nearly always.
-static void find_end(const dem_line_task *task, size_t count, const strip_front *begin, strip_front *restrict end,
-                     strip_front *restrict next)
-{
-    *end = *begin;
-    do
-        move_end(task, count, end);
-    while (!next_begin(task, count, end, next));
-}
-
-/// Ends against the grain: the length of the line inside it before the end, and whether the end itself is.
-typedef struct strip_inside {
-    float before[DEM_LINE_LANES], inside[DEM_LINE_LANES];
-} strip_inside;
-
-static void compare_spans(const dem_line_field *field, uint32_t strip, const float *restrict end,
-                          strip_inside *restrict result)
-{
-    for (int l = 0; l < DEM_LINE_LANES; l++)
-        result->before[l] = result->inside[l] = 0;
-    for (uint32_t s = field->span[strip]; s < field->span[strip + 1]; s++) {
-        const float *restrict enter = field->spans[s][0], *restrict leave = field->spans[s][1];
-        for (int l = 0; l < DEM_LINE_LANES; l++) {
-            float z = end[l], up = z > enter[l] ? z : enter[l];
-            up = up < leave[l] ? up : leave[l];
-            result->before[l] += up - enter[l];
-            result->inside[l] += ((z > enter[l]) & (z < leave[l])) ? 1.0f : 0.0f;
-        }
-    }
+    widef off = widef_load(ramp + part * WIDTH) * widef_all(step) - widef_all(ball.u);
+    widef rest = widef_all(ball.reach2) - off * off;
+    *meets = widef_below(widef_all(0), rest);
+    return widef_sqrt(widef_select(*meets, rest, widef_all(0)));
 }
 
 /// A strip and the balls it meets.
@@ -162,52 +95,144 @@ typedef struct strip_place {
     float x, y;       ///< of the first line
 } strip_place;
 
-// the intervals of all balls, their radii raised by `grow`; `begin` gets where the first ones begin
-static void set_ends(const strip_place *place, float grow, strip_front *restrict begin)
+// The intervals of all balls on each line, their radii raised by `grow`; empty ones are inside out and far away.
+// `begin` gets where the first ones begin.
+static void set_ends(const strip_place *place, float grow, strip_front *begin)
 {
     const dem_line_task *task = place->task;
-    front_nowhere(begin);
+    const widef far = widef_all(nowhere), back = widef_all(-nowhere);
+    front f;
+    for (int p = 0; p < PARTS; p++) {
+        f.at[p] = far;
+        f.ball[p] = widef_all(0);
+    }
     for (size_t k = 0; k < place->count; k++) {
         strip_ball ball = strip_view(place->balls, task->field->axis, place->list[k], place->x, place->y, grow);
-        strip_ends(ball, (int32_t)k, task->field->step, task->from[k], task->to[k], begin);
+        widef who = widef_all((float)k), w = widef_all(ball.w);
+        for (int p = 0; p < PARTS; p++) {
+            widef_mask meets;
+            widef half = half_length(ball, task->field->step, p, &meets);
+            widef from = widef_select(meets, w - half, far);
+            widef_store(task->from[k] + p * WIDTH, from);
+            widef_store(task->to[k] + p * WIDTH, widef_select(meets, w + half, back));
+            f.ball[p] = widef_select(widef_below(from, f.at[p]), who, f.ball[p]);
+            f.at[p] = widef_min(from, f.at[p]);
+        }
+    }
+    front_store(begin, &f);
+}
+
+// moves the end of the union's interval on as far as the balls reach, seen in their order
+static void move_end(const dem_line_task *task, size_t count, strip_front *end)
+{
+    const widef back = widef_all(-nowhere);
+    front f = front_load(end);
+    for (size_t j = 0; j < count; j++) {
+        widef who = widef_all((float)j);
+        for (int p = 0; p < PARTS; p++) {
+            widef from = widef_load(task->from[j] + p * WIDTH), to = widef_load(task->to[j] + p * WIDTH);
+            to = widef_select(widef_up_to(from, f.at[p]), to, back);
+            f.ball[p] = widef_select(widef_below(f.at[p], to), who, f.ball[p]);
+            f.at[p] = widef_max(to, f.at[p]);
+        }
+    }
+    front_store(end, &f);
+}
+
+// the lowest begin of an interval beyond `end`; false: it is not the end, a ball goes on from there
+static bool next_begin(const dem_line_task *task, size_t count, const strip_front *end, strip_front *begin)
+{
+    const widef far = widef_all(nowhere);
+    front f, passed = front_load(end);
+    widef_mask on[PARTS];
+    for (int p = 0; p < PARTS; p++) {
+        f.at[p] = far;
+        f.ball[p] = widef_all(0);
+        on[p] = widef_below(far, far);
+    }
+    for (size_t j = 0; j < count; j++) {
+        widef who = widef_all((float)j);
+        for (int p = 0; p < PARTS; p++) {
+            widef from = widef_load(task->from[j] + p * WIDTH), to = widef_load(task->to[j] + p * WIDTH);
+            on[p] = widef_either(on[p], widef_and(widef_up_to(from, passed.at[p]), widef_below(passed.at[p], to)));
+            from = widef_select(widef_below(passed.at[p], from), from, far);
+            f.ball[p] = widef_select(widef_below(from, f.at[p]), who, f.ball[p]);
+            f.at[p] = widef_min(from, f.at[p]);
+        }
+    }
+    front_store(begin, &f);
+    return !lines_of(on);
+}
+
+// The end of the union's interval that begins at `begin`, and where the next one begins. Balls come by their centres
+// along the lines, so one pass reaches the end nearly always.
+static void find_end(const dem_line_task *task, size_t count, const strip_front *begin, strip_front *end,
+                     strip_front *next)
+{
+    *end = *begin;
+    do
+        move_end(task, count, end);
+    while (!next_begin(task, count, end, next));
+}
+
+/// Ends against the grain: the length of the line inside it before the end, and whether the end itself is.
+typedef struct strip_inside {
+    float before[DEM_LINE_LANES], inside[DEM_LINE_LANES];
+} strip_inside;
+
+static void compare_spans(const dem_line_field *field, uint32_t strip, const float *end, strip_inside *result)
+{
+    for (int p = 0; p < PARTS; p++) {
+        widef before = widef_all(0), inside = widef_all(0), z = widef_load(end + p * WIDTH);
+        for (uint32_t s = field->span[strip]; s < field->span[strip + 1]; s++) {
+            widef enter = widef_load(field->spans[s][0] + p * WIDTH);
+            widef leave = widef_load(field->spans[s][1] + p * WIDTH);
+            widef_mask in = widef_and(widef_below(enter, z), widef_below(z, leave));
+            before = before + (widef_min(widef_max(z, enter), leave) - enter);
+            inside = inside + widef_select(in, widef_all(1), widef_all(0));
+        }
+        widef_store(result->before + p * WIDTH, before);
+        widef_store(result->inside + p * WIDTH, inside);
     }
 }
 
-// what ends that lie on the line add to the sums of their balls
-static void add_sums(const strip_place *place, const strip_front *front, const strip_inside *against)
+// What ends that lie on the line add to the sums of their balls. Neighbouring lines mostly end at the same ball.
+static void add_sums(const strip_place *place, const strip_front *ends, const strip_inside *against)
 {
     const dem_line_field *field = place->task->field;
     const float *axes[3] = {place->balls->x, place->balls->y, place->balls->z};
     const float *u = axes[(field->axis + 1) % 3], *v = axes[(field->axis + 2) % 3], *w = axes[field->axis];
-    float outside = place->task->protruding, inside = -place->task->uncovered;
-    float sums[4][DEM_LINE_LANES];
-    uint32_t ball[DEM_LINE_LANES];
-    for (int l = 0; l < DEM_LINE_LANES; l++)
-        ball[l] = place->list[front->ball[l]];
-    for (int l = 0; l < DEM_LINE_LANES; l++) {
-        uint32_t i = ball[l];
-        float across = place->x + (float)l * field->step - u[i], along = front->at[l] - w[i];
-        float s = front->at[l] < nowhere ? (against->inside[l] > 0 ? inside : outside) * fabsf(along) : 0;
-        sums[0][l] = s * across;
-        sums[1][l] = s * (place->y - v[i]);
-        sums[2][l] = s * (front->at[l] < nowhere ? along : 0);
-        sums[3][l] = s;
-    }
-    for (int l = 0; l < DEM_LINE_LANES; l++)
+    float outside = place->task->protruding, inside = -place->task->uncovered, sum[4];
+    float(*sums)[4] = place->task->sums, *into = NULL;
+    for (uint32_t there = lines_below(ends->at, nowhere); there; there &= there - 1) {
+        int l = __builtin_ctz(there);
+        uint32_t i = place->list[(uint32_t)ends->ball[l]];
+        if (into != sums[i]) {
+            if (into)
+                memcpy(into, sum, sizeof sum);
+            into = sums[i];
+            memcpy(sum, into, sizeof sum);
+        }
+        float across = place->x + (float)l * field->step - u[i], along = ends->at[l] - w[i];
+        float s = (against->inside[l] > 0 ? inside : outside) * fabsf(along);
+        const float by[4] = {across, place->y - v[i], along, 1};
         for (int k = 0; k < 4; k++)
-            place->task->sums[ball[l]][k] += sums[k][l];
+            sum[k] += s * by[k];
+    }
+    if (into)
+        memcpy(into, sum, sizeof sum);
 }
 
 typedef struct strip_sums {
     float covered[DEM_LINE_LANES], common[DEM_LINE_LANES];
 } strip_sums;
 
-static void add_strip(const strip_place *place, strip_sums *restrict sums, bool gradient)
+static void add_strip(const strip_place *place, strip_sums *sums, bool gradient)
 {
     const dem_line_task *task = place->task;
     strip_front begin, end, next;
     set_ends(place, 0, &begin);
-    for (; any_below(begin.at, nowhere); begin = next) {
+    for (; lines_below(begin.at, nowhere); begin = next) {
         strip_inside low, high;
         find_end(task, place->count, &begin, &end, &next);
         compare_spans(task->field, place->strip, begin.at, &low);
@@ -223,23 +248,24 @@ static void add_strip(const strip_place *place, strip_sums *restrict sums, bool 
     }
 }
 
-static strip_place place_strip(const dem_ball_columns *balls, const dem_line_task *task, int32_t row, uint32_t strip)
+static strip_place place_strip(const dem_ball_columns *balls, const dem_line_task *task, const dem_strip_lists *lists,
+                               int32_t row, uint32_t strip)
 {
     const dem_line_field *field = task->field;
     uint32_t at = strip - field->strip[task->begin];
     int32_t column = field->first[row] + (int32_t)(strip - field->strip[row]) * DEM_LINE_LANES;
-    return (strip_place){balls, task, task->list + task->start[at], task->start[at + 1] - task->start[at], strip,
+    return (strip_place){balls, task, lists->list + lists->start[at], lists->start[at + 1] - lists->start[at], strip,
                          field->origin[0] + (float)column * field->step, field->origin[1] + (float)row * field->step};
 }
 
-static void measure(const dem_ball_columns *balls, dem_line_task *task, bool gradient)
+static void measure(const dem_ball_columns *balls, dem_line_task *task, const dem_strip_lists *lists, bool gradient)
 {
     const dem_line_field *field = task->field;
     double covered = 0, common = 0;
     for (int32_t row = task->begin; row < task->end; row++) {
         strip_sums sums = {{0}, {0}};
         for (uint32_t s = field->strip[row]; s < field->strip[row + 1]; s++) {
-            strip_place place = place_strip(balls, task, row, s);
+            strip_place place = place_strip(balls, task, lists, row, s);
             if (place.count)
                 add_strip(&place, &sums, gradient);
         }
@@ -257,83 +283,112 @@ static void measure(const dem_ball_columns *balls, dem_line_task *task, bool gra
 /// Intervals of the union on the lines of a strip that hold whatever balls do within the slack.
 typedef struct strip_cover {
     strip_front begin[MOST_INTERVALS], end[MOST_INTERVALS];
+    float core[MOST_INTERVALS][2];  // what an interval holds of all lines of the strip; ends far away: nothing
     size_t count;
 } strip_cover;
 
-static void keep(const strip_front *front, const int32_t *restrict which, unsigned char *kept)
+static void set_core(strip_cover *cover, size_t m)
 {
-    for (int l = 0; l < DEM_LINE_LANES; l++)
-        if (which[l])
-            kept[front->ball[l]] = 1;
+    float *core = cover->core[m];
+    core[0] = -nowhere;
+    core[1] = nowhere;
+    for (int l = 0; l < DEM_LINE_LANES; l++) {
+        core[0] = cover->begin[m].at[l] > core[0] ? cover->begin[m].at[l] : core[0];
+        core[1] = cover->end[m].at[l] < core[1] ? cover->end[m].at[l] : core[1];
+    }
 }
 
-// Moves `end` on to the farthest end of a ball that it lies in; keeps the balls that did. False: none did.
-static bool reach_on(const dem_line_task *task, size_t count, strip_front *restrict end)
+static void keep(const float *ball, uint32_t lines, unsigned char *kept)
 {
-    float at[DEM_LINE_LANES], passed[DEM_LINE_LANES];
-    int32_t ball[DEM_LINE_LANES], farther[DEM_LINE_LANES], any = 0;
-    memcpy(at, end->at, sizeof at);
-    memcpy(passed, end->at, sizeof passed);
-    memcpy(ball, end->ball, sizeof ball);
+    for (; lines; lines &= lines - 1)
+        kept[(uint32_t)ball[__builtin_ctz(lines)]] = 1;
+}
+
+// Moves `end` on as far as the balls reach, by as few of them as it takes, and keeps these: each goes on to the
+// farthest end of those that begin before the last one ends. Balls come by their centres, not by where they begin, so
+// it may stop early.
+static void chain_on(const dem_line_task *task, size_t count, strip_front *end)
+{
+    const widef back = widef_all(-nowhere);
+    front f = front_load(end);  // the farthest that balls reach which begin before `at`
+    widef at[PARTS];
+    widef_mask next[PARTS];
+    memcpy(at, f.at, sizeof at);
     for (size_t j = 0; j < count; j++) {
-        const float *restrict from = task->from[j], *restrict to = task->to[j];
-        int32_t who = (int32_t)j;
-        for (int l = 0; l < DEM_LINE_LANES; l++) {
-            float t = from[l] <= passed[l] ? to[l] : -nowhere;
-            ball[l] = t > at[l] ? who : ball[l];
-            at[l] = t > at[l] ? t : at[l];
+        widef who = widef_all((float)j), from[PARTS];
+        for (int p = 0; p < PARTS; p++) {
+            from[p] = widef_load(task->from[j] + p * WIDTH);
+            next[p] = widef_and(widef_below(at[p], from[p]), widef_up_to(from[p], f.at[p]));
+        }
+        uint32_t lines = lines_of(next);
+        if (lines) {
+            front_store(end, &f);
+            keep(end->ball, lines, task->kept);
+            for (int p = 0; p < PARTS; p++)
+                at[p] = widef_select(next[p], f.at[p], at[p]);
+        }
+        for (int p = 0; p < PARTS; p++) {
+            widef to = widef_select(widef_up_to(from[p], at[p]), widef_load(task->to[j] + p * WIDTH), back);
+            f.ball[p] = widef_select(widef_below(f.at[p], to), who, f.ball[p]);
+            f.at[p] = widef_max(to, f.at[p]);
         }
     }
-    for (int l = 0; l < DEM_LINE_LANES; l++) {
-        farther[l] = at[l] > passed[l];
-        any |= farther[l];
-    }
-    memcpy(end->at, at, sizeof at);
-    memcpy(end->ball, ball, sizeof ball);
-    keep(end, farther, task->kept);
-    return any;
+    front_store(end, &f);
+    for (int p = 0; p < PARTS; p++)
+        next[p] = widef_below(at[p], f.at[p]);
+    keep(end->ball, lines_of(next), task->kept);
 }
 
 // The union of the balls of `task->from` and `to`, made up from as few of them as it takes: those are kept. False: too
 // many intervals.
-static bool find_cover(const dem_line_task *task, size_t count, const strip_front *first, strip_cover *restrict cover)
+static bool find_cover(const dem_line_task *task, size_t count, const strip_front *first, strip_cover *cover)
 {
-    strip_front begin = *first, end, next;
+    strip_front begin = *first, next;
+    uint32_t lines;
     cover->count = 0;
-    for (; any_below(begin.at, nowhere); begin = next) {
-        int32_t there[DEM_LINE_LANES];
+    for (; (lines = lines_below(begin.at, nowhere)); begin = next) {
         if (cover->count == MOST_INTERVALS)
             return false;
-        for (int l = 0; l < DEM_LINE_LANES; l++)
-            there[l] = begin.at[l] < nowhere;
-        keep(&begin, there, task->kept);
-        end = begin;
-        while (reach_on(task, count, &end))
-            ;
-        next_begin(task, count, &end, &next);
-        cover->begin[cover->count] = begin;
-        cover->end[cover->count++] = end;
+        strip_front *end = &cover->end[cover->count];
+        keep(begin.ball, lines, task->kept);
+        cover->begin[cover->count] = *end = begin;
+        do
+            chain_on(task, count, end);
+        while (!next_begin(task, count, end, &next));
+        set_core(cover, cover->count++);
     }
     return true;
 }
 
-// does a ball lie within the cover on all lines?
-static bool is_covered(const strip_cover *restrict cover, strip_ball ball, float step)
+// The same as is_covered, without looking at the lines one by one; false: they must be looked at.
+static bool is_in_core(const strip_cover *cover, strip_ball ball, float step)
 {
-    float from[DEM_LINE_LANES], to[DEM_LINE_LANES], beyond[DEM_LINE_LANES];
-    for (int l = 0; l < DEM_LINE_LANES; l++) {
-        float off = (float)l * step - ball.u, rest = ball.reach2 - off * off;
-        float half = sqrtf(rest > 0 ? rest : 0);
-        from[l] = ball.w - half;
-        to[l] = ball.w + half;
-        beyond[l] = rest > 0 ? 1.0f : 0.0f;
+    float last = ramp[DEM_LINE_LANES - 1] * step;
+    float off = ball.u < 0 ? ball.u : ball.u > last ? last - ball.u : 0, rest = ball.reach2 - off * off;
+    if (!(rest > 0))
+        return true;
+    float half = sqrtf(rest);
+    for (size_t m = 0; m < cover->count; m++)
+        if (ball.w - half > cover->core[m][0] && ball.w + half < cover->core[m][1])
+            return true;
+    return false;
+}
+
+// does a ball lie within the cover on all lines?
+static bool is_covered(const strip_cover *cover, strip_ball ball, float step)
+{
+    uint32_t beyond = 0;
+    for (int p = 0; p < PARTS; p++) {
+        widef_mask meets;
+        widef half = half_length(ball, step, p, &meets);
+        widef from = widef_all(ball.w) - half, to = widef_all(ball.w) + half;
+        uint32_t bits = widef_bits(meets);
+        for (size_t m = 0; m < cover->count; m++)
+            bits &= ~widef_bits(widef_and(widef_below(widef_load(cover->begin[m].at + p * WIDTH), from),
+                                          widef_below(to, widef_load(cover->end[m].at + p * WIDTH))));
+        beyond |= bits;
     }
-    for (size_t m = 0; m < cover->count; m++) {
-        const float *restrict begin = cover->begin[m].at, *restrict end = cover->end[m].at;
-        for (int l = 0; l < DEM_LINE_LANES; l++)
-            beyond[l] = ((from[l] > begin[l]) & (to[l] < end[l])) ? 0.0f : beyond[l];
-    }
-    return !any_above(beyond, 0.5f);
+    return !beyond;
 }
 
 // the balls of the strip that are needed, written to `list`; returns their number
@@ -349,23 +404,25 @@ static uint32_t cull_strip(const strip_place *place, float slack, uint32_t *list
     for (size_t k = 0; k < place->count; k++) {
         uint32_t i = place->list[k];
         strip_ball grown = strip_view(place->balls, task->field->axis, i, place->x, place->y, slack);
-        if (!found || task->kept[k] || !is_covered(&cover, grown, task->field->step))
+        if (!found || task->kept[k] ||
+            !(is_in_core(&cover, grown, task->field->step) || is_covered(&cover, grown, task->field->step)))
             list[count++] = i;
     }
     return count;
 }
 
-static void cull(const dem_ball_columns *balls, dem_line_task *task, float slack)
+static void cull(const dem_ball_columns *balls, dem_line_task *task, const dem_strip_lists *from, dem_strip_lists *to,
+                 float slack)
 {
     const dem_line_field *field = task->field;
     uint32_t at = 0;
     for (int32_t row = task->begin; row < task->end; row++)
         for (uint32_t s = field->strip[row]; s < field->strip[row + 1]; s++) {
-            strip_place place = place_strip(balls, task, row, s);
-            task->start[s - field->strip[task->begin]] = at;
-            at += cull_strip(&place, slack, task->list + at);
+            strip_place place = place_strip(balls, task, from, row, s);
+            to->start[s - field->strip[task->begin]] = at;
+            at += cull_strip(&place, slack, to->list + at);
         }
-    task->start[field->strip[task->end] - field->strip[task->begin]] = at;
+    to->start[field->strip[task->end] - field->strip[task->begin]] = at;
 }
 
 const dem_line_kernels DEM_LEVEL_OF(dem_line_kernels) = {.measure = measure, .cull = cull};

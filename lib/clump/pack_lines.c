@@ -13,9 +13,14 @@ static const float far_away = 1e9f;
 static const float rounding = 1e-6f;
 
 // The lists of strips hold while no ball changes by more than the slack [d_eq]. With little of it they are short, with
-// much they last: between the two it goes by how many evaluations the last lists served.
-static const float first_slack = 0.012f, least_slack = 0.003f, most_slack = 0.03f, slack_factor = 1.5f;
-enum { SHORT_LIVED = 5, LONG_LIVED = 12 };
+// much they last: between the two it goes by how many evaluations the last lists served. Those with little are made
+// from those with much.
+typedef struct slack_range {
+    float first, least, most;
+    int short_lived, long_lived;
+} slack_range;
+static const slack_range wide_slack = {0.03f, 0.01f, 0.04f, 10, 60}, close_slack = {0.006f, 0.001f, 0.02f, 4, 10};
+static const float slack_factor = 1.5f;
 enum { FEW_BALLS = 8 };  // on a strip: none is worth leaving out
 
 static uint32_t strips_of(const dem_columns *c, int32_t row)
@@ -104,19 +109,25 @@ static void share_rows(dem_lines *lines, int axis)
     }
 }
 
+static uint32_t strips_of_task(const dem_line_task *task)
+{
+    return task->field->strip[task->end] - task->field->strip[task->begin];
+}
+
 static dem_status take_work_space(dem_lines *lines, dem_error *error)
 {
     for (int k = 0; k < DEM_LINE_TASKS; k++) {
         dem_line_task *task = &lines->tasks[k];
         task->sums = dem_arena_take(&lines->arena, lines->capacity, sizeof *task->sums);
-        uint32_t strips = task->field->strip[task->end] - task->field->strip[task->begin];
-        task->start = dem_arena_take(&lines->arena, strips + 1, sizeof *task->start);
+        task->wide.start = dem_arena_take(&lines->arena, strips_of_task(task) + 1, sizeof *task->wide.start);
+        task->close.start = dem_arena_take(&lines->arena, strips_of_task(task) + 1, sizeof *task->close.start);
         task->from = dem_arena_take(&lines->arena, lines->capacity, sizeof *task->from);
         task->to = dem_arena_take(&lines->arena, lines->capacity, sizeof *task->to);
         task->kept = dem_arena_take(&lines->arena, lines->capacity, sizeof *task->kept);
     }
-    float **columns[4] = {&lines->listed.x, &lines->listed.y, &lines->listed.z, &lines->listed.r};
-    for (int k = 0; k < 4; k++)
+    dem_ball_columns *w = &lines->wide.then, *c = &lines->close.then;
+    float **columns[8] = {&w->x, &w->y, &w->z, &w->r, &c->x, &c->y, &c->z, &c->r};
+    for (int k = 0; k < 8; k++)
         *columns[k] = dem_arena_take(&lines->arena, lines->capacity, sizeof(float));
     for (int axis = 0; axis < 3; axis++)
         lines->order[axis] = dem_arena_take(&lines->arena, lines->capacity, sizeof *lines->order[axis]);
@@ -144,7 +155,8 @@ dem_status dem_lines_build(const dem_pack_grain *grain, const dem_pack_kernels *
                            const double offsets[2], size_t capacity, dem_crew *crew, dem_lines *lines, dem_error *error)
 {
     *lines = (dem_lines){.kernels = kernels, .capacity = capacity, .crew = crew,
-                         .uncovered = 1, .protruding = 1, .slack = first_slack};
+                         .uncovered = 1, .protruding = 1, .wide.slack = wide_slack.first,
+                         .close.slack = close_slack.first};
     columns_of of = {.grain = grain, .step = step, .offsets = offsets};
     dem_status status = DEM_OK;
     dem_crew_run(crew, 3, build_columns, &of);
@@ -170,8 +182,10 @@ dem_status dem_lines_build(const dem_pack_grain *grain, const dem_pack_kernels *
 
 void dem_lines_release(dem_lines *lines)
 {
-    for (int k = 0; k < DEM_LINE_TASKS; k++)
-        free(lines->tasks[k].list);
+    for (int k = 0; k < DEM_LINE_TASKS; k++) {
+        free(lines->tasks[k].wide.list);
+        free(lines->tasks[k].close.list);
+    }
     dem_arena_release(&lines->arena);
     *lines = (dem_lines){0};
 }
@@ -187,7 +201,7 @@ static void visit_strips(const dem_lines *lines, const dem_ball_columns *balls, 
     float per_row = 1 / field->step, per_strip = 1 / (field->step * DEM_LINE_LANES);
     for (size_t k = balls->count; k-- > 0;) {
         uint32_t i = order[k].ball;
-        float r = balls->r[i] + lines->slack, from_row = (v[i] - r - field->origin[1]) * per_row;
+        float r = balls->r[i] + lines->wide.slack, from_row = (v[i] - r - field->origin[1]) * per_row;
         float to_row = (v[i] + r - field->origin[1]) * per_row;
         int32_t begin = from_row > (float)task->begin ? (int32_t)from_row : task->begin;
         int32_t end = to_row < (float)(task->end - 1) ? (int32_t)to_row + 1 : task->end;
@@ -201,10 +215,10 @@ static void visit_strips(const dem_lines *lines, const dem_ball_columns *balls, 
             if (to < 0 || from >= (float)strips)
                 continue;
             int32_t first = from > 0 ? (int32_t)from : 0, last = to < (float)strips ? (int32_t)to : strips - 1;
-            uint32_t *start = task->start + (field->strip[row] - field->strip[task->begin]);
+            uint32_t *start = task->wide.start + (field->strip[row] - field->strip[task->begin]);
             for (int32_t s = first; s <= last; s++) {
                 if (fill)
-                    task->list[--start[s]] = i;
+                    task->wide.list[--start[s]] = i;
                 else
                     start[s]++;
             }
@@ -212,23 +226,29 @@ static void visit_strips(const dem_lines *lines, const dem_ball_columns *balls, 
     }
 }
 
+static bool reserve_list(dem_strip_lists *lists, size_t count)
+{
+    if (count <= lists->capacity && lists->list)
+        return true;
+    size_t capacity = count + count / 4 + 64;
+    uint32_t *grown = realloc(lists->list, capacity * sizeof *grown);
+    if (!grown)
+        return false;
+    lists->list = grown;
+    lists->capacity = capacity;
+    return true;
+}
+
 // which balls each strip of a task meets: a counting sort
 static bool list_strips(const dem_lines *lines, const dem_ball_columns *balls, dem_line_task *task)
 {
-    uint32_t strips = task->field->strip[task->end] - task->field->strip[task->begin];
-    memset(task->start, 0, (strips + 1) * sizeof *task->start);
+    uint32_t strips = strips_of_task(task), *start = task->wide.start;
+    memset(start, 0, (strips + 1) * sizeof *start);
     visit_strips(lines, balls, task, false);
     for (uint32_t s = 1; s <= strips; s++)
-        task->start[s] += task->start[s - 1];
-    size_t count = task->start[strips];
-    if (count > task->list_capacity || !task->list) {
-        size_t capacity = count + count / 4 + 64;
-        uint32_t *grown = realloc(task->list, capacity * sizeof *grown);
-        if (!grown)
-            return false;
-        task->list = grown;
-        task->list_capacity = capacity;
-    }
+        start[s] += start[s - 1];
+    if (!reserve_list(&task->wide, start[strips]))
+        return false;
     visit_strips(lines, balls, task, true);
     return true;
 }
@@ -269,32 +289,55 @@ static void add_gradient(const dem_line_task *task, const dem_ball_columns *ball
     }
 }
 
-static bool lists_hold(const dem_lines *lines, const dem_ball_columns *balls)
+static bool lists_hold(const dem_listing *listing, const dem_ball_columns *balls)
 {
-    const dem_ball_columns *then = &lines->listed;
+    const dem_ball_columns *then = &listing->then;
     bool hold = then->count == balls->count;
     for (size_t i = 0; i < balls->count && hold; i++) {
         float x = balls->x[i] - then->x[i], y = balls->y[i] - then->y[i], z = balls->z[i] - then->z[i];
-        hold = sqrtf(x * x + y * y + z * z) + fabsf(balls->r[i] - then->r[i]) < lines->slack - rounding;
+        hold = sqrtf(x * x + y * y + z * z) + fabsf(balls->r[i] - then->r[i]) < listing->slack - rounding;
     }
     return hold;
 }
 
 // lists will be made of the balls as they are now
-static void begin_lists(dem_lines *lines, const dem_ball_columns *balls)
+static void begin_lists(dem_listing *listing, const slack_range *range, const dem_ball_columns *balls)
 {
-    dem_ball_columns *then = &lines->listed;
-    if (then->count == balls->count && lines->served < SHORT_LIVED)
-        lines->slack = fminf(lines->slack * slack_factor, most_slack);
-    else if (then->count == balls->count && lines->served > LONG_LIVED)
-        lines->slack = fmaxf(lines->slack / slack_factor, least_slack);
-    lines->served = 0;
-    set_order(lines, balls);
+    dem_ball_columns *then = &listing->then;
+    if (then->count == balls->count && listing->served < range->short_lived)
+        listing->slack = fminf(listing->slack * slack_factor, range->most);
+    else if (then->count == balls->count && listing->served > range->long_lived)
+        listing->slack = fmaxf(listing->slack / slack_factor, range->least);
+    listing->served = 0;
     float *const to[4] = {then->x, then->y, then->z, then->r};
     float *const from[4] = {balls->x, balls->y, balls->z, balls->r};
     for (int k = 0; k < 4; k++)
         memcpy(to[k], from[k], balls->count * sizeof(float));
     then->count = balls->count;
+}
+
+static bool has_many_balls(const dem_line_task *task)
+{
+    uint32_t strips = strips_of_task(task);
+    return task->wide.start[strips] > FEW_BALLS * strips;
+}
+
+// the lists that are to be made; false: no memory
+static bool make_lists(const dem_lines *lines, const dem_ball_columns *balls, dem_line_task *task)
+{
+    const dem_line_kernels *kernels = lines->kernels->lines;
+    if (lines->make_wide) {
+        if (!list_strips(lines, balls, task))
+            return false;
+        if (has_many_balls(task))
+            kernels->cull(balls, task, &task->wide, &task->wide, lines->wide.slack);
+    }
+    if (lines->make_close && has_many_balls(task)) {
+        if (!reserve_list(&task->close, task->wide.start[strips_of_task(task)]))
+            return false;
+        kernels->cull(balls, task, &task->wide, &task->close, lines->close.slack);
+    }
+    return true;
 }
 
 static void run_task(const dem_lines *lines, const dem_ball_columns *balls, dem_line_task *task, bool gradient)
@@ -303,14 +346,9 @@ static void run_task(const dem_lines *lines, const dem_ball_columns *balls, dem_
         memset(task->sums, 0, balls->count * sizeof *task->sums);
     task->uncovered = (float)lines->uncovered;
     task->protruding = (float)lines->protruding;
-    if (lines->make_lists) {
-        uint32_t strips = task->field->strip[task->end] - task->field->strip[task->begin];
-        task->failed = !list_strips(lines, balls, task);
-        if (!task->failed && task->start[strips] > FEW_BALLS * strips)
-            lines->kernels->lines->cull(balls, task, lines->slack);
-    }
+    task->failed = !make_lists(lines, balls, task);
     if (!task->failed)
-        lines->kernels->lines->measure(balls, task, gradient);
+        lines->kernels->lines->measure(balls, task, has_many_balls(task) ? &task->close : &task->wide, gradient);
 }
 
 // what the crew shares
@@ -330,17 +368,23 @@ dem_status dem_lines_measure(dem_lines *lines, const dem_ball_columns *balls, do
                              dem_line_volumes *volumes, dem_error *error)
 {
     DEM_ASSERT(balls->count <= lines->capacity);
-    lines->make_lists = !lists_hold(lines, balls);
-    if (lines->make_lists)
-        begin_lists(lines, balls);
-    lines->served++;
+    lines->make_wide = !lists_hold(&lines->wide, balls);
+    lines->make_close = lines->make_wide || !lists_hold(&lines->close, balls);
+    if (lines->make_wide) {
+        begin_lists(&lines->wide, &wide_slack, balls);
+        set_order(lines, balls);
+    }
+    if (lines->make_close)
+        begin_lists(&lines->close, &close_slack, balls);
+    lines->wide.served++;
+    lines->close.served++;
     dem_crew_run(lines->crew, DEM_LINE_TASKS, run_part, &(shared){lines, balls, gradient != NULL});
     for (size_t i = 0; i < balls->count && gradient; i++)
         gradient[i][0] = gradient[i][1] = gradient[i][2] = gradient[i][3] = 0;
     double grain = lines->grain_length[0] + lines->grain_length[1] + lines->grain_length[2], covered = 0, common = 0;
     for (int k = 0; k < DEM_LINE_TASKS; k++) {
         if (lines->tasks[k].failed) {
-            lines->listed.count = 0;
+            lines->wide.then.count = 0;
             return dem_fail_memory(error);
         }
         covered += lines->tasks[k].covered;

@@ -12,6 +12,13 @@ typedef struct dem_placed_ball {
     uint32_t ball;
 } dem_placed_ball;
 
+/// The balls when lists were made, and by how much they may change before new ones are.
+typedef struct dem_listing {
+    dem_ball_columns then;       ///< of another number of balls: there are none
+    float slack;
+    int served;                  ///< evaluations by the lists there are
+} dem_listing;
+
 /// Its tasks point into it: not to be copied.
 typedef struct dem_lines {
     dem_line_field fields[3];
@@ -20,10 +27,8 @@ typedef struct dem_lines {
     dem_arena arena;
     dem_placed_ball *order[3];   ///< [capacity] balls by their coordinates
     size_t order_count;
-    dem_ball_columns listed;     ///< the balls when the lists of the tasks were made; of other numbers: there are none
-    float slack;                 ///< by how much balls may change before new lists are made
-    bool make_lists;             ///< in the evaluation under way
-    int served;                  ///< evaluations by the lists there are
+    dem_listing wide, close;     ///< of the tasks' lists
+    bool make_wide, make_close;  ///< in the evaluation under way
     const dem_pack_kernels *kernels;
     size_t capacity;             ///< most balls
     double uncovered, protruding;  ///< weights of the two parts of the difference; 1 unless set otherwise

@@ -22,7 +22,7 @@ dem_status dem_moment_rows_set(dem_packing *p, const dem_pack_state *state, size
                                dem_error *error);
 /// Newton steps of least cost (pack_metric.h) until the moments are met. Where they cannot be (no union of balls has
 /// the moments of an ellipsoid, which has the least second moments of all bodies of its volume) the balls end as near
-/// as it came. `rows` and `spare` are work space.
+/// as it came. `rows` are those of the balls where they end, if the moments are met; `spare` is work space.
 dem_status dem_pack_project(dem_packing *p, dem_pack_state *state, size_t kept, dem_moment_rows *rows,
                             dem_moment_rows *spare, bool *met, dem_error *error);
 

@@ -27,7 +27,8 @@ typedef struct descent {
     double *tangent[10];
     size_t tangent_count;
     double value;
-    dem_line_volumes volumes;       // where it was evaluated last
+    bool strayed;                   // it was not evaluated at `x` last
+    dem_line_volumes volumes;       // where it was
     dem_status status;
     dem_error *error;
 } descent;
@@ -74,7 +75,7 @@ static void project(const descent *d, double *vector)
 static void add_links(descent *d, const dem_ball *balls, double *value)
 {
     dem_packing *p = d->p;
-    size_t open = dem_pack_links(p, balls, d->count, dem_pack_spring_overlap, p->links);
+    size_t open = dem_pack_links(p, balls, d->count, dem_pack_spring_overlap);
     for (size_t k = 0; k < open; k++) {
         const dem_link *link = &p->links[k];
         dem_vec3 u = v3_unit(v3_sub(balls[link->i].centre, balls[link->j].centre));
@@ -208,6 +209,7 @@ static void accept(descent *d)
     d->g = d->next_g;
     d->next_x = x;
     d->next_g = g;
+    d->strayed = false;
 }
 
 static bool search(descent *d, double promise, double *next)
@@ -217,6 +219,7 @@ static bool search(descent *d, double promise, double *next)
         for (size_t i = 0; i < d->size; i++)
             d->next_x[i] = d->x[i] - step * d->direction[i];
         *next = evaluate(d, d->next_x, d->next_g);
+        d->strayed = true;
         if (*next < d->value - sufficient * step * promise)
             return true;
     }
@@ -271,7 +274,7 @@ dem_status dem_pack_polish(dem_packing *p, dem_lines *lines, dem_pack_state *sta
     d.value = evaluate(&d, d.x, d.g);
     if (d.status == DEM_OK)
         descend(&d, options);
-    if (d.status == DEM_OK)
+    if (d.status == DEM_OK && d.strayed)
         evaluate(&d, d.x, d.g);
     status = d.status;
     if (volumes)

@@ -70,7 +70,7 @@ dem_status dem_pack_prune_to(dem_packing *p, dem_pack_state *state, size_t count
         size_t step = (size_t)((double)state->count * share);
         step = step < 1 ? 1 : step > state->count - count ? state->count - count : step;
         if (p->connected && (double)state->count <= join_early * (double)count && !p->spring)
-            p->spring = dem_pack_links(p, state->balls, state->count, dem_pack_overlap, p->links) > 0;
+            p->spring = dem_pack_links(p, state->balls, state->count, dem_pack_overlap) > 0;
         DEM_TRY(dem_pack_prune(p, state, step, 0, error));
         DEM_TRY(dem_pack_relax(p, state, (dem_relax_options){p->effort.prune_iterations, 0.02, 2e-5}, error));
     }

@@ -153,7 +153,7 @@ static dem_status descend(side_run *s, dem_error *error)
             DEM_TRY(reach_out(s, error));
         dem_ball_columns_set(&p->columns, state->balls, state->count);
         DEM_TRY(dem_lines_measure(s->lines, &p->columns, s->slope, &volumes, error));
-        size_t open = dem_pack_links(p, state->balls, state->count, dem_pack_overlap, p->links);
+        size_t open = dem_pack_links(p, state->balls, state->count, dem_pack_overlap);
         if (!open && volumes.difference < s->best)
             keep_best(s, volumes.difference);
         set_directions(s, open);

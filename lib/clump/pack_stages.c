@@ -153,15 +153,15 @@ static dem_status polish(dem_pack_stages *run, dem_lines *lines, size_t tangent_
     return dem_pack_polish(&run->p, lines, &run->state, options, &run->volumes, error);
 }
 
-// removes balls without exposed surface
-static dem_status drop_hidden(dem_pack_stages *run, size_t *dropped, dem_error *error)
+// removes balls without exposed surface; where there are none, `rows` are those of the first `kept` moments
+static dem_status drop_hidden(dem_pack_stages *run, size_t kept, size_t *dropped, dem_error *error)
 {
     dem_pack_state *state = &run->state;
     size_t before = state->count;
     bool *gone = dem_alloc_zero(before, sizeof *gone);
     if (!gone)
         return dem_fail_memory(error);
-    dem_status status = dem_moment_rows_set(&run->p, state, 1, &run->rows, error);
+    dem_status status = dem_moment_rows_set(&run->p, state, kept, &run->rows, error);
     for (size_t i = 0; i < before && status == DEM_OK; i++) {
         double r = state->balls[i].radius;
         gone[i] = run->rows.rows[0][i][3] <= least_exposed * 4 * DEM_PI * r * r;
@@ -186,7 +186,7 @@ dem_status dem_pack_fit(dem_pack_stages *run, dem_error *error)
     DEM_TRY(polish(run, lines, 0, error));
     for (int k = 0; k < RESPENDINGS; k++) {
         size_t dropped, wanted = run->state.count;
-        DEM_TRY(drop_hidden(run, &dropped, error));
+        DEM_TRY(drop_hidden(run, 1, &dropped, error));
         if (!dropped)
             break;
         DEM_TRY(dem_pack_resize(run, wanted, error));
@@ -211,14 +211,12 @@ static dem_status project(dem_pack_stages *run, size_t kept, size_t tangent, boo
     dem_packing *p = &run->p;
     for (int k = 0; k < PROJECTIONS; k++) {
         DEM_TRY(dem_pack_project(p, &run->state, kept, &run->rows, &run->spare_rows, met, error));
-        DEM_TRY(dem_pack_measure(run, error));
         if (!*met || k + 1 == PROJECTIONS)
             break;
-        DEM_TRY(dem_moment_rows_set(p, &run->state, tangent, &run->rows, error));
         bool rough = k == 0 && run->state.count >= many_balls;
         DEM_TRY(polish(run, rough ? &run->rough : &run->lines, tangent, error));
     }
-    return DEM_OK;
+    return dem_pack_measure(run, error);
 }
 
 // Meets all moments; or volume and centre, from as near as the others could be met; or volume and centre alone. What
@@ -262,6 +260,12 @@ static size_t moments_of(dem_moments_kept kept)
     return kept == DEM_MOMENTS_EXACT ? DEM_MOMENT_COUNT : kept == DEM_MOMENTS_VOLUME ? 4 : 0;
 }
 
+// of a clump that keeps none the volume is looked at
+static size_t moments_told(dem_moments_kept kept)
+{
+    return kept == DEM_MOMENTS_FREE ? 1 : moments_of(kept);
+}
+
 // keeping the moments may have pulled pieces apart: closes and projects in turn; one piece has the last word
 static dem_status rejoin(dem_pack_stages *run, dem_error *error)
 {
@@ -281,15 +285,15 @@ dem_status dem_pack_settle(dem_pack_stages *run, dem_error *error)
     size_t dropped;
     dem_pack_stage(&run->p, 1);
     DEM_TRY(rejoin(run, error));
-    DEM_TRY(drop_hidden(run, &dropped, error));
+    DEM_TRY(drop_hidden(run, moments_told(run->met), &dropped, error));
     DEM_TRY(dem_pack_go_on(&run->p, error));
     DEM_TRY(dem_pack_measure(run, error));
     DEM_TRY(dem_pack_go_on(&run->p, error));
-    while (run->met != DEM_MOMENTS_FREE) {
-        DEM_TRY(dem_moment_rows_set(&run->p, &run->state, moments_of(run->met), &run->rows, error));
-        if (run->rows.residual <= exact_residual)
+    bool told = dropped == 0;
+    for (;; run->met--, told = false) {
+        if (!told)
+            DEM_TRY(dem_moment_rows_set(&run->p, &run->state, moments_told(run->met), &run->rows, error));
+        if (run->met == DEM_MOMENTS_FREE || run->rows.residual <= exact_residual)
             return DEM_OK;
-        run->met--;
     }
-    return dem_moment_rows_set(&run->p, &run->state, 1, &run->rows, error);
 }

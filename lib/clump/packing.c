@@ -84,6 +84,7 @@ static dem_status take_work_space(dem_packing *p, dem_error *error)
     p->near_size = dem_arena_take(&p->arena, blocks, sizeof *p->near_size);
     p->near_at = dem_arena_take(&p->arena, n, sizeof *p->near_at);
     p->links = dem_arena_take(&p->arena, n, sizeof *p->links);
+    p->tree = dem_arena_take(&p->arena, n, sizeof *p->tree);
     p->tree_reach = dem_arena_take(&p->arena, padded, sizeof *p->tree_reach);
     p->tree_nearest = dem_arena_take(&p->arena, padded, sizeof *p->tree_nearest);
     p->tree_balls = dem_arena_take(&p->arena, n, sizeof *p->tree_balls);

@@ -88,10 +88,11 @@ typedef struct dem_packing {
     dem_ball *near_at;           ///< [capacity] the balls the lists were made for
     double near_slack;           ///< lists hold while no ball has moved by more than half of it
     double near_moved;           ///< the farthest that one has moved since
-    struct dem_link *links;      ///< [capacity]
-    dem_ball *tree_balls;        ///< [capacity] those of the spanning tree found last
-    size_t tree_count;
-    double tree_overlap;         ///< the least of its links
+    struct dem_link *links;      ///< [capacity] the open ones, as dem_pack_links left them
+    struct dem_link *tree;       ///< [capacity] the spanning tree found last
+    dem_ball *tree_balls;        ///< [capacity] its balls
+    size_t tree_count, link_count;
+    double tree_overlap;         ///< what was asked of its links
     dem_ball_columns tree_columns;
     float *tree_reach;           ///< [capacity, padded]
     int32_t *tree_nearest;       ///< [capacity, padded]

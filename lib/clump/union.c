@@ -18,14 +18,16 @@ dem_status dem_balls_union(const dem_ball *balls, size_t count, dem_union *resul
         local[i] = (dem_ball){v3_sub(balls[i].centre, origin), balls[i].radius};
     dem_ball_union u;
     dem_status status = dem_ball_union_compute(local, count, false, 1, &u, error);
+    if (status == DEM_OK) {
+        result->solid = dem_solid_from_moments(u.moments, origin, u.area);
+        result->pieces = dem_ball_pieces(local, count, 0, NULL);
+        result->redundant = u.redundant;
+        dem_ball_union_release(&u);
+        if (result->pieces == 0)
+            status = dem_fail_memory(error);
+    }
     free(local);
-    if (status != DEM_OK)
-        return status;
-    result->solid = dem_solid_from_moments(u.moments, origin, u.area);
-    result->pieces = u.pieces;
-    result->redundant = u.redundant;
-    dem_ball_union_release(&u);
-    return DEM_OK;
+    return status;
 }
 
 dem_clump_def dem_clump_def_of_balls(const char *name, const dem_ball *balls, size_t count, const dem_union *whole,

@@ -199,7 +199,7 @@ dem_status dem_ball_union_compute(const dem_ball *balls, size_t count, bool want
     }
     dem_ball_tree_release(&tree);
     free(shaken);
-    if (done && (result->pieces = dem_ball_pieces(balls, count, 0, NULL)) > 0)
+    if (done)
         return DEM_OK;
     dem_ball_union_release(result);
     return dem_fail_memory(error);

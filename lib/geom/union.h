@@ -32,7 +32,6 @@ typedef struct dem_cap {
 typedef struct dem_ball_union {
     dem_moments moments;  ///< about the origin the balls are given in
     double area;          ///< exposed
-    size_t pieces;        ///< connected pieces (balls that overlap)
     size_t redundant;     ///< balls without exposed surface
     dem_patch *patches;   ///< [count]
     dem_arc *arcs;        ///< [arc_count], only if asked for; each crease once, i < j
