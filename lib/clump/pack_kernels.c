@@ -385,6 +385,18 @@ static inline int32_t steps_above(double x)
     return -steps_below(-x);
 }
 
+enum { ROWS = 16 };  // taken together
+
+// the first and the last point of rows k.. in a disc about (x, y)
+static void row_ends(double x, double y, double disc, double k, double *restrict from, double *restrict to)
+{
+    for (int t = 0; t < ROWS; t++) {
+        double dy = k + t - y, rest = disc - dy * dy, reach = sqrt(rest > 0 ? rest : 0);
+        from[t] = ceil(x - reach);
+        to[t] = rest > 0 ? floor(x + reach) : -1e9;
+    }
+}
+
 static int64_t lattice_gain(const dem_lattice *lattice, dem_ball ball, uint64_t *cover)
 {
     const dem_columns *c = &lattice->rows;
@@ -392,30 +404,31 @@ static int64_t lattice_gain(const dem_lattice *lattice, dem_ball ball, uint64_t 
     double y = (ball.centre.y - c->origin[0]) / c->step, z = (ball.centre.z - c->origin[1]) / c->step;
     int64_t gain = 0;
     int32_t last = steps_below(z + r);
+    double from[ROWS], to[ROWS];
     for (int32_t j = steps_above(z - r); j <= last; j++) {
         double dz = j - z, disc = r * r - dz * dz;
         if (disc <= 0)
             continue;
         double half = sqrt(disc);
-        int32_t k1 = steps_below(y + half), begin = 0, end = 0;
+        int32_t k1 = steps_below(y + half), begin = 0, end = 0, count;
         uint32_t row = 0;
         if (j >= 0 && j < c->row_count) {
             row = c->line[j];
             begin = c->first[j];
             end = begin + (int32_t)(c->line[j + 1] - row);
         }
-        for (int32_t k = steps_above(y - half); k <= k1; k++) {
-            double dy = k - y, rest = disc - dy * dy;
-            if (rest <= 0)
-                continue;
-            double reach = sqrt(rest);
-            int32_t i0 = steps_above(x - reach), i1 = steps_below(x + reach);
-            if (i1 < i0)
-                continue;
-            if (k >= begin && k < end)
-                gain += row_gain(lattice, row + (uint32_t)(k - begin), i0, i1, cover);
-            else
-                gain -= i1 - i0 + 1;
+        for (int32_t k = steps_above(y - half); k <= k1; k += count) {
+            count = k1 - k + 1 < ROWS ? k1 - k + 1 : ROWS;
+            row_ends(x, y, disc, k, from, to);
+            for (int32_t t = 0; t < count; t++) {
+                int32_t i0 = (int32_t)from[t], i1 = (int32_t)to[t];
+                if (i1 < i0)
+                    continue;
+                if (k + t >= begin && k + t < end)
+                    gain += row_gain(lattice, row + (uint32_t)(k + t - begin), i0, i1, cover);
+                else
+                    gain -= i1 - i0 + 1;
+            }
         }
     }
     return gain;
