@@ -91,7 +91,7 @@ static inline void soft_place(dem_world *w, size_t body, dem_vec3 position, dem_
     dem_quat q = template_run_orientation(&w->templates.items[w->bodies.shape[row]], quat_unit(orientation));
     memcpy(pose, (double[]){position.x, position.y, position.z, q.w, q.x, q.y, q.z}, 7 * sizeof *pose);
     w->bodies.limit[row] = -1;
-    w->bodies.path_then[row] = -INFINITY;
+    w->bodies.search_limit[row] = -INFINITY;
     if (w->bodies.wall_limit)
         w->bodies.wall_limit[row] = -1;
 }

@@ -124,16 +124,19 @@ static void the_one_that_stays_keeps_its_momentum(void **state)
     m->scene.bond_count = 1;
     dem_world *w = model_world(m, 1);
     check(measured(w)->bonds == 1);
-    double before = 0;
+    double before = velocity_before(w, 1).z, most = 0;
     while (w->bodies.living == 2) {
-        before = velocity_before(w, 1).z;
+        double now = velocity_before(w, 1).z;
+        most = larger(most, fabs(now - before));
+        before = now;
         run_steps(w, 1);
     }
     const dem_figures *f = measured(w);
     check(f->bonds == 0 && f->bonds_lost == 1 && f->energy.broken == 0);
-    check_near(velocity_before(w, 0).z, before, 0.01 * 0.2);  // a step of its swing
-    // (w h)^2 / 8 of the energy of the swing
-    check_near(f->energy.error, 0, 2e-6);
+    check_near(velocity_before(w, 0).z, before, 1.01 * most);  // a step of its swing
+    check(most < 0.02);
+    // w h = 0.16; (w h)^2 / 4 of the energy of the swing, which is (0.1 / 1.9)^2 of all, where it is cut at full speed
+    check_near(f->energy.error, 0, 2e-5);
     run_steps(w, 100);
     before = velocity_before(w, 0).z;
     run_steps(w, 100);

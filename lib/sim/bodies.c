@@ -146,7 +146,7 @@ void dem_body_put(dem_world *w, size_t row, const dem_body_def *def)
            7 * sizeof *motion);
     put_momentum(w, row, q, velocity, spin);
     b->limit[row] = -1;
-    b->path_then[row] = -INFINITY;  // a search is due, however wide the skin
+    b->search_limit[row] = -INFINITY;  // a search is due, however wide the skin
     if (b->strain_limit)
         b->strain_limit[row] = 0;
     if (b->wall_limit)

@@ -13,8 +13,12 @@
 #include "sim/slim.h"
 
 enum { LEVELS = 24, CELLS_LEAST = 4, SLACK = 16 };
+enum { BODIES_TO_SHARE = 512 };  // that are worth more than one thread
 
-static const double SKIN = 0.2;  // of the mean bounding radius; flat from 0.1 to 0.4
+static const double SKIN = 0.2;       // of the mean bounding radius; flat from 0.1 to 0.4
+static const double SKIN_STEPS = 40;  // that the skin should last where bodies are fast, as long as
+static const double SKIN_MOST = 2;    // ... it is not so many times as wide
+static const double SKIN_LEFT = 0.1;  // of the skin, that looking once more at how far bodies have moved is worth
 
 typedef struct level {
     double cell, radius;  // edge of a cell, largest radius [m]
@@ -28,7 +32,15 @@ typedef struct near_pair {
     uint32_t a, b, image;
 } near_pair;
 
-/// Kept from one search to the next, as fresh memory would cost more than the search.
+// what a thread finds
+typedef struct finding {
+    uint32_t *found;  // about one body
+    near_pair *near;
+    size_t count, capacity;
+    bool failed;
+} finding;
+
+/// Little is kept from one search to the next, as columns and lists of pairs would be a sixth of all memory.
 struct dem_search {
     dem_world *w;
     level levels[LEVELS];
@@ -36,12 +48,15 @@ struct dem_search {
     dem_box box;
     double pad;            // of distances in 32 bits [m]
     float *x, *y, *z, *r;  // sorted by level and cell
-    uint32_t *id, *cell, *found;
+    uint32_t *id, *cell;
     uint8_t *level_of;
     bool slim;  // some shapes are
     int32_t *moved;
-    near_pair *near, *sorted;
-    size_t near_count, near_capacity, sorted_capacity;
+    finding *findings;  // [parts]
+    int parts;
+    near_pair *near;  // of all parts: the only one's, or joined
+    near_pair *joined, *sorted;
+    size_t near_count;
     uint32_t *first;  // [bodies + 1] of the pairs to come
 };
 typedef struct dem_search search;
@@ -136,32 +151,57 @@ dem_status dem_search_create(dem_world *w, dem_error *error)
     search *s = w->search = dem_alloc_zero(1, sizeof *s);
     if (!s)
         return dem_fail_memory(error);
-    size_t n = w->bodies.count, room = n + 2 * DEM_WIDTH_FLOAT + 32;
+    size_t n = w->bodies.count;
     s->w = w;
     for (size_t i = 0; i < w->templates.count; i++)
         s->slim |= w->templates.items[i].slim;
+    s->parts = n > BODIES_TO_SHARE ? w->threads : 1;
+    s->findings = dem_alloc_zero((size_t)s->parts, sizeof *s->findings);
+    s->moved = dem_alloc_zero(w->periodic ? 3 * n + 3 : 0, sizeof *s->moved);
+    s->first = dem_alloc_zero(n + 1, sizeof *s->first);
+    return s->first && s->findings && s->moved ? DEM_OK : dem_fail_memory(error);
+}
+
+static bool make_columns(search *s)
+{
+    size_t n = s->w->bodies.count, room = n + 2 * DEM_WIDTH_FLOAT + 32;
     s->x = dem_alloc_zero(room, sizeof *s->x);
     s->y = dem_alloc_zero(room, sizeof *s->y);
     s->z = dem_alloc_zero(room, sizeof *s->z);
     s->r = dem_alloc_zero(room, sizeof *s->r);
     s->id = dem_alloc_zero(room, sizeof *s->id);
     s->cell = dem_alloc(n + 1, sizeof *s->cell);
-    s->found = dem_alloc(2 * room, sizeof *s->found);
     s->level_of = dem_alloc(n + 1, sizeof *s->level_of);
-    s->moved = dem_alloc_zero(w->periodic ? 3 * n + 3 : 0, sizeof *s->moved);
-    s->first = dem_alloc_zero(n + 1, sizeof *s->first);
-    bool good = s->first && s->x && s->y && s->z && s->r && s->id && s->cell && s->found && s->level_of && s->moved;
-    return good ? DEM_OK : dem_fail_memory(error);
+    bool good = s->x && s->y && s->z && s->r && s->id && s->cell && s->level_of;
+    for (int i = 0; good && i < s->parts; i++)
+        good = (s->findings[i].found = dem_alloc(2 * room, sizeof *s->findings[i].found)) != NULL;
+    return good;
+}
+
+static void release_columns(search *s)
+{
+    for (int i = 0; s->findings && i < s->parts; i++) {
+        free(s->findings[i].found);
+        free(s->findings[i].near);
+        s->findings[i] = (finding){0};
+    }
+    void *all[] = {s->x, s->y, s->z, s->r, s->id, s->cell, s->level_of, s->joined, s->sorted};
+    for (size_t i = 0; i < sizeof all / sizeof *all; i++)
+        free(all[i]);
+    s->x = s->y = s->z = s->r = NULL;
+    s->id = s->cell = NULL;
+    s->level_of = NULL;
+    s->near = s->joined = s->sorted = NULL;
 }
 
 void dem_search_destroy(dem_search *s)
 {
     if (!s)
         return;
-    void *all[] = {s->x,     s->y,        s->z,     s->r,    s->id,     s->cell,
-                   s->found, s->level_of, s->moved, s->near, s->sorted, s->first};
-    for (size_t i = 0; i < sizeof all / sizeof *all; i++)
-        free(all[i]);
+    release_columns(s);
+    free(s->findings);
+    free(s->moved);
+    free(s->first);
     for (int i = 0; i < LEVELS; i++)
         free(s->levels[i].start);
     free(s);
@@ -252,8 +292,8 @@ static dem_status build_grids(search *s, dem_error *error)
 
 // ---- queries
 
-// candidates of a ball in one grid: ids in s->found
-static size_t look_around(search *s, const level *l, dem_vec3 x, double reach)
+// candidates of a ball in one grid
+static size_t look_around(const search *s, const level *l, dem_vec3 x, double reach, uint32_t *found)
 {
     dem_vec3 from = v3_sub(x, s->box.low);
     dem_scan_job job = {.x = s->x,
@@ -263,7 +303,7 @@ static size_t look_around(search *s, const level *l, dem_vec3 x, double reach)
                         .id = s->id,
                         .centre = {(float)from.x, (float)from.y, (float)from.z},
                         .reach = (float)((reach + s->pad) * (1 + 1e-6)),
-                        .found = s->found};
+                        .found = found};
     int32_t c[3];
     cell_of(s, l, x, c);
     bool row = c[0] > 0 && (uint32_t)c[0] + 1 < l->dims[0];
@@ -279,18 +319,6 @@ static size_t look_around(search *s, const level *l, dem_vec3 x, double reach)
     return job.count;
 }
 
-// memory for `count` items, whose old content is not needed
-static bool make_room(void *array, size_t *capacity, size_t count, size_t size)
-{
-    void **p = array;
-    if (count <= *capacity && *p)
-        return true;
-    free(*p);
-    *capacity = count + count / 8;
-    *p = dem_alloc(*capacity, size);
-    return *p != NULL;
-}
-
 static bool boxes_apart(const search *s, uint32_t a, uint32_t b, uint32_t image)
 {
     const dem_world *w = s->w;
@@ -303,20 +331,20 @@ static bool boxes_apart(const search *s, uint32_t a, uint32_t b, uint32_t image)
     return dem_slim_apart(w, a, b, offset, w->skin + w->ahead);
 }
 
-static bool add_near(search *s, uint32_t a, uint32_t b, uint32_t image)
+static bool add_near(const search *s, finding *f, uint32_t a, uint32_t b, uint32_t image)
 {
     if (hold_whole(body_hold(&s->w->bodies, a)) && hold_whole(body_hold(&s->w->bodies, b)))
         return true;  // contacts can do nothing to either
     if (s->slim && boxes_apart(s, a, b, image))
         return true;
-    if (!dem_grow(&s->near, &s->near_capacity, s->near_count, sizeof *s->near))
+    if (!dem_grow(&f->near, &f->capacity, f->count, sizeof *f->near))
         return false;
-    s->near[s->near_count++] = (near_pair){a, b, image};
+    f->near[f->count++] = (near_pair){a, b, image};
     return true;
 }
 
 // partners of body i seen from where its image stands
-static bool look_from_image(search *s, uint32_t i, const int image[3])
+static bool look_from_image(const search *s, finding *f, uint32_t i, const int image[3])
 {
     const dem_bodies *b = &s->w->bodies;
     bool own = image[0] == 0 && image[1] == 0 && image[2] == 0;
@@ -326,13 +354,13 @@ static bool look_from_image(search *s, uint32_t i, const int image[3])
     if (!own)
         x = v3_add(x, v3(s->w->shifts[4 * away], s->w->shifts[4 * away + 1], s->w->shifts[4 * away + 2]));
     for (int k = s->level_of[i]; k < s->level_count; k++) {
-        size_t count = look_around(s, &s->levels[k], x, b->radius[i] + s->w->skin + s->w->ahead);
+        size_t count = look_around(s, &s->levels[k], x, b->radius[i] + s->w->skin + s->w->ahead, f->found);
         for (size_t j = 0; j < count; j++) {
-            uint32_t other = s->found[j];
+            uint32_t other = f->found[j];
             if (k == s->level_of[i] && (other < i || (other == i && !first_half)))
                 continue;
             // i at x + S sees the other at its place: the other is at -S from i
-            bool good = other >= i ? add_near(s, i, other, back) : add_near(s, other, i, away);
+            bool good = other >= i ? add_near(s, f, i, other, back) : add_near(s, f, other, i, away);
             if (!good)
                 return false;
         }
@@ -340,7 +368,7 @@ static bool look_from_image(search *s, uint32_t i, const int image[3])
     return true;
 }
 
-static bool look_from(search *s, uint32_t i)
+static bool look_from(const search *s, finding *f, uint32_t i)
 {
     const dem_domain_def *domain = &s->w->domain;
     double reach = s->w->bodies.radius[i] + s->levels[s->level_count - 1].radius + s->w->skin + s->w->ahead;
@@ -356,9 +384,59 @@ static bool look_from(search *s, uint32_t i)
     for (int x = low[0]; x <= high[0]; x++)
         for (int y = low[1]; y <= high[1]; y++)
             for (int z = low[2]; z <= high[2]; z++)
-                if (!look_from_image(s, i, (int[]){x, y, z}))
+                if (!look_from_image(s, f, i, (int[]){x, y, z}))
                     return false;
     return true;
+}
+
+// whole segments of bodies for a part
+static size_t part_begin(const search *s, int part)
+{
+    size_t row = s->w->segment_count * (size_t)part / (size_t)s->parts * DEM_SEGMENT;
+    return row < s->w->bodies.count ? row : s->w->bodies.count;
+}
+
+static void look_part(void *user, int part)
+{
+    const search *s = user;
+    if (part >= s->parts)
+        return;
+    finding *f = &s->findings[part];
+    for (size_t i = part_begin(s, part); i < part_begin(s, part + 1) && !f->failed; i++)
+        f->failed = !body_absent(&s->w->bodies, i) && !look_from(s, f, (uint32_t)i);
+}
+
+static void in_parts(search *s, void (*work)(void *user, int part))
+{
+    if (s->parts > 1)
+        dem_team_run(s->w->team, work, s);
+    else
+        work(s, 0);
+}
+
+// what all parts have found, in the order of bodies
+static dem_status look_from_all(search *s, dem_error *error)
+{
+    in_parts(s, look_part);
+    s->near_count = 0;
+    for (int i = 0; i < s->parts; i++) {
+        if (s->findings[i].failed)
+            return dem_fail_memory(error);
+        s->near_count += s->findings[i].count;
+    }
+    s->near = s->findings[0].near;
+    if (s->parts == 1)
+        return DEM_OK;
+    s->near = s->joined = dem_alloc(s->near_count, sizeof *s->joined);
+    if (!s->joined)
+        return dem_fail_memory(error);
+    size_t at = 0;
+    for (int i = 0; i < s->parts; i++) {
+        if (s->findings[i].count)
+            memcpy(s->near + at, s->findings[i].near, s->findings[i].count * sizeof *s->near);
+        at += s->findings[i].count;
+    }
+    return DEM_OK;
 }
 
 // ---- pairs
@@ -386,7 +464,7 @@ static void sort_partners(near_pair *near, size_t count)
     }
 }
 
-// by a, then b, then image; first[a] is where those of a begin
+// by a; first[a] is where those of a begin
 static dem_status sort_near(search *s, uint32_t *first, const near_pair **sorted, dem_error *error)
 {
     near_pair *near = s->near;
@@ -397,7 +475,7 @@ static dem_status sort_near(search *s, uint32_t *first, const near_pair **sorted
     for (size_t i = 0; i < n; i++)
         first[i + 1] += first[i];
     if (s->level_count > 1 || s->w->periodic) {
-        if (!make_room(&s->sorted, &s->sorted_capacity, s->near_count, sizeof *s->sorted))
+        if (!(s->sorted = dem_alloc(s->near_count, sizeof *s->sorted)))
             return dem_fail_memory(error);
         for (size_t i = 0; i < s->near_count; i++)
             s->sorted[first[s->near[i].a]++] = s->near[i];
@@ -405,7 +483,7 @@ static dem_status sort_near(search *s, uint32_t *first, const near_pair **sorted
         first[0] = 0;
         near = s->sorted;
     }
-    for (size_t i = 0; near && i < n; i++)
+    for (size_t i = 0; i < n; i++)
         sort_partners(near + first[i], first[i + 1] - first[i]);
     *sorted = near;
     return DEM_OK;
@@ -565,18 +643,84 @@ static dem_status replace_pairs(search *s, dem_error *error)
     return DEM_OK;
 }
 
+static dem_vec3 then_of(const dem_bodies *b, size_t row)
+{
+    const double *then = b->then + 3 * row;
+    return v3(then[0], then[1], then[2]);
+}
+
+// by the speed of the fastest body; bodies that leave are looked for by the skin, so there it stays
+static double skin_now(const dem_world *w)
+{
+    const dem_bodies *b = &w->bodies;
+    double fastest = 0, largest = 0, most = SKIN_MOST * w->skin_least;
+    if (w->population)
+        return w->skin_least;
+    for (size_t i = 0; i < b->count; i++) {
+        const double *v = body_pose(b, i) + 8;
+        fastest = larger(fastest, v[0] * v[0] + v[1] * v[1] + v[2] * v[2]);
+        largest = larger(largest, b->radius[i]);
+    }
+    // images that see each other have to be among those that there are
+    for (int k = 0; w->periodic && k < 3; k++)
+        if (w->domain.periodic[k])
+            most = smaller(most, (DEM_IMAGES_ASIDE - 1) * (v3_get(w->domain.high, k) - v3_get(w->domain.low, k)) -
+                                     2 * largest - w->ahead);
+    return larger(w->skin_least, smaller(most, 2 * SKIN_STEPS * sqrt(fastest) * w->next_step));
+}
+
+// how far bodies have moved since the search: the middle of all, and the most about it. Where a search also puts bodies
+// back into a periodic domain, takes those out that have left, or bounds what walls sweep, there is no middle.
+static double moved_most(const dem_world *w, dem_vec3 *middle)
+{
+    const dem_bodies *b = &w->bodies;
+    dem_box box = box_empty();
+    double most = 0;
+    bool together = !w->periodic && !w->population && !w->walls.sweep && b->count;
+    *middle = v3(0, 0, 0);
+    for (size_t i = 0; together && i < b->count; i++)
+        box = box_with(box, v3_sub(body_position(b, i), then_of(b, i)));
+    if (together)
+        *middle = v3_scale(v3_add(box.low, box.high), 0.5);
+    for (size_t i = 0; i < b->count; i++)
+        if (!body_absent(b, i))
+            most = larger(most, v3_norm2(v3_sub(v3_sub(body_position(b, i), then_of(b, i)), *middle)));
+    return sqrt(most);
+}
+
+// Two bodies that were not near have come nearer by no more than both have moved about the middle; rods and plates come
+// near by turning, too.
+bool dem_broad_extend(dem_world *w)
+{
+    dem_bodies *b = &w->bodies;
+    dem_vec3 middle;
+    if (w->search->slim || !(moved_most(w, &middle) <= (1 - SKIN_LEFT) * w->skin / 2))
+        return false;
+    for (size_t i = 0; i < b->count; i++)
+        if (!body_absent(b, i)) {
+            dem_vec3 moved = v3_sub(v3_sub(body_position(b, i), then_of(b, i)), middle);
+            b->search_limit[i] = b->path[i] + w->skin / 2 - v3_norm(moved);
+        }
+    return true;
+}
+
 dem_status dem_broad_search(dem_world *w, dem_error *error)
 {
     search *s = w->search;
-    s->near_count = 0;
     s->level_count = 0;
     if (w->periodic)
         dem_bodies_wrap(w, s->moved);
-    DEM_TRY(build_grids(s, error));
-    for (uint32_t i = 0; i < w->bodies.count; i++)
-        if (!body_absent(&w->bodies, i) && !look_from(s, i))
-            return dem_fail_memory(error);
-    DEM_TRY(replace_pairs(s, error));
-    memcpy(w->bodies.path_then, w->bodies.path, w->bodies.count * sizeof *w->bodies.path_then);
+    w->skin = skin_now(w);
+    dem_status status = make_columns(s) ? build_grids(s, error) : dem_fail_memory(error);
+    if (status == DEM_OK)
+        status = look_from_all(s, error);
+    if (status == DEM_OK)
+        status = replace_pairs(s, error);
+    release_columns(s);
+    DEM_TRY(status);
+    for (size_t i = 0; i < w->bodies.count; i++) {
+        memcpy(w->bodies.then + 3 * i, body_pose(&w->bodies, i), 3 * sizeof *w->bodies.then);
+        w->bodies.search_limit[i] = w->bodies.path[i] + w->skin / 2;
+    }
     return DEM_OK;
 }

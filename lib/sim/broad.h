@@ -12,7 +12,11 @@ void dem_search_destroy(dem_search *search);
 /// have no contacts yet and ask to be refreshed. Bodies are put back into a periodic domain first.
 dem_status dem_broad_search(dem_world *world, dem_error *error);
 
-/// The skin that suits the world's bodies [m].
+/// Whether the pairs of the last search will do for longer, as bodies have moved less than their paths say, or all
+/// together. Sets anew how far they may go.
+bool dem_broad_extend(dem_world *world);
+
+/// The skin that suits the world's bodies while they are slow [m].
 double dem_broad_skin(const dem_world *world);
 
 /// Row of the image (x, y, z), each within DEM_IMAGES_ASIDE.

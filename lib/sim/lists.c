@@ -1,5 +1,6 @@
 #include "sim/lists.h"
 
+#include <stdatomic.h>
 #include <stdlib.h>
 
 #include "base/status.h"
@@ -9,6 +10,8 @@
 #include "sim/refresh.h"
 #include "sim/servo.h"
 #include "sim/wall_lists.h"
+
+enum { BODIES_TO_SHARE = 256 };  // that ask: worth more than one thread
 
 static bool finite_body(const dem_bodies *b, size_t row)
 {
@@ -37,23 +40,54 @@ bool dem_lists_outside(const dem_world *w, size_t row)
     return false;
 }
 
-static dem_status check_body(const dem_world *w, size_t row, dem_error *error)
+// what is wrong with a body; NULL: nothing
+static const char *fault_of(const dem_world *w, size_t row)
 {
     const dem_bodies *b = &w->bodies;
     if (body_absent(b, row))
-        return DEM_OK;
+        return NULL;
     if (!finite_body(b, row))
-        return fail_body(w, row, error,
-                         "is not finite; the run is unstable: take a smaller time step, or look at the contacts there");
+        return "is not finite; the run is unstable: take a smaller time step, or look at the contacts there";
     double size = larger(b->radius[row], w->skin);
     if (body_stride(b, row, w->next_step) > 2 * size)
-        return fail_body(w, row, error,
-                         "runs away: it moves by more than its own size in a step; take a smaller time step");
+        return "runs away: it moves by more than its own size in a step; take a smaller time step";
     if (w->domain.leaving == DEM_LEAVING_ERROR && dem_lists_outside(w, row))
-        return fail_body(w, row, error,
-                         "has left the domain; make the domain or the walls larger, or set "
-                         "\"leaving\" to \"ignore\" or \"delete\"");
-    return DEM_OK;
+        return "has left the domain; make the domain or the walls larger, or set "
+               "\"leaving\" to \"ignore\" or \"delete\"";
+    return NULL;
+}
+
+typedef struct checking {
+    const dem_world *w;
+    size_t parts;
+    atomic_size_t first;  // among those that ask, with a fault
+} checking;
+
+static void check_part(void *user, int part)
+{
+    checking *c = user;
+    size_t count = c->w->asked_count, k = count * (size_t)part / c->parts, end = count * ((size_t)part + 1) / c->parts;
+    if ((size_t)part >= c->parts)
+        return;
+    while (k < end && !fault_of(c->w, c->w->asked[k]))
+        k++;
+    size_t first = atomic_load(&c->first);
+    while (k < end && k < first && !atomic_compare_exchange_weak(&c->first, &first, k))
+        continue;
+}
+
+static dem_status check_bodies(dem_world *w, dem_error *error)
+{
+    checking c = {.w = w, .parts = w->asked_count > BODIES_TO_SHARE ? (size_t)w->threads : 1};
+    atomic_init(&c.first, w->asked_count);
+    if (c.parts > 1)
+        dem_team_run(w->team, check_part, &c);
+    else
+        check_part(&c, 0);
+    size_t first = atomic_load(&c.first);
+    if (first == w->asked_count)
+        return DEM_OK;
+    return fail_body(w, w->asked[first], error, fault_of(w, w->asked[first]));
 }
 
 // one sweep of the bodies' bounds, for the speed of sweeping walls about them
@@ -72,15 +106,21 @@ static void bound_walls(dem_world *w)
     w->sweep_speed = w->sweep_least + dem_servo_most(&w->walls);
 }
 
-static bool search_due(const dem_world *w)
+static bool search_due(dem_world *w)
 {
     bool never = !w->pairs.first;  // nobody asks in a world without bodies
     if (never || (w->population && w->population->search))
         return true;
-    for (size_t k = 0; k < w->asked_count; k++)
-        if (!(w->bodies.path[w->asked[k]] - w->bodies.path_then[w->asked[k]] <= w->skin / 2))
-            return true;
-    return false;
+    bool beyond = false;
+    for (size_t k = 0; k < w->asked_count; k++) {
+        size_t row = w->asked[k];
+        if (!(w->bodies.path[row] <= w->bodies.search_limit[row])) {
+            beyond = true;
+            if (w->bodies.search_limit[row] == -INFINITY)
+                return true;  // it has come, or was put elsewhere
+        }
+    }
+    return beyond && !dem_broad_extend(w);
 }
 
 // also the rows that bodies have left, for what lists still have of them
@@ -114,12 +154,8 @@ static dem_status look(dem_world *w, dem_error *error)
     DEM_TRY(dem_refresh(w, error));
     double t2 = dem_clock();
     DEM_TRY(dem_contacts_rebuild(w, error));
-    // the first lists are of all pairs; later ones are of a few, and there are more who need the memory
-    if (w->fresh_count > w->bodies.count) {
-        free(w->fresh);
-        w->fresh = NULL;
-        w->fresh_capacity = w->fresh_count = 0;
-    }
+    if (w->fresh_count > w->bodies.count)
+        dem_refresh_forget(w);
     if (w->features.soft)
         DEM_TRY(dem_soft_reserve(w, error));
     double t3 = dem_clock();
@@ -139,8 +175,7 @@ dem_status dem_lists_renew(dem_world *w, dem_error *error)
 dem_status dem_lists_update(dem_world *w, dem_error *error)
 {
     double begin = dem_clock();
-    for (size_t k = 0; k < w->asked_count; k++)
-        DEM_TRY(check_body(w, w->asked[k], error));
+    DEM_TRY(check_bodies(w, error));
     bool searched = search_due(w);
     if (searched)
         DEM_TRY(search(w, error));

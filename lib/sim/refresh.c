@@ -7,7 +7,7 @@
 #include "sim/bonds.h"
 #include "sim/broad.h"
 
-enum { PAIRS_TO_SHARE = 256 };  // expired pairs that are worth more than one thread
+enum { LOOKS_TO_SHARE = 256 };  // that are worth more than one thread
 enum { AHEAD = 6 };             // looks that memory is asked for ahead
 
 static const double HORIZON = 80;                             // steps that a margin should last
@@ -30,26 +30,23 @@ double dem_refresh_margin(const dem_world *w, size_t a, size_t b, double strides
     return larger(margin, larger(1.1 * w->reach, SOFT_SHARE * w->ahead));
 }
 
-double dem_refresh_limit(const dem_world *w, size_t row)
+// the path limit of a body but for its pairs
+static double own_limit(const dem_world *w, size_t row)
 {
-    const dem_pairs *pairs = &w->pairs;
     if (body_absent(&w->bodies, row))
         return INFINITY;
-    double limit = w->bodies.path_then[row] + w->skin / 2;
-    if (w->bodies.wall_limit && !w->walls.sweep)
-        limit = smaller(limit, w->bodies.wall_limit[row]);
-    for (size_t i = pairs->adjacency_first[row]; i < pairs->adjacency_first[row + 1]; i++)
-        limit = smaller(limit, pairs->adjacency_limit[i]);
-    return limit;
+    double limit = w->bodies.search_limit[row];
+    return w->bodies.wall_limit && !w->walls.sweep ? smaller(limit, w->bodies.wall_limit[row]) : limit;
 }
 
 static void set_side(const dem_world *w, size_t row, dem_cull_side *side)
 {
     const dem_template *t = &w->templates.items[w->bodies.shape[row]];
-    double scale = body_scale(&w->bodies, row);
+    double scale = body_scale(&w->bodies, row), two = 2 * scale;
     dem_quat q = body_orientation(&w->bodies, row);
-    dem_vec3 x = v3_scale(quat_rotate(q, v3(1, 0, 0)), scale), y = v3_scale(quat_rotate(q, v3(0, 1, 0)), scale);
-    dem_vec3 z = v3_scale(quat_rotate(q, v3(0, 0, 1)), scale);
+    dem_vec3 x = v3(scale - two * (q.y * q.y + q.z * q.z), two * (q.x * q.y + q.w * q.z), two * (q.x * q.z - q.w * q.y));
+    dem_vec3 y = v3(two * (q.x * q.y - q.w * q.z), scale - two * (q.x * q.x + q.z * q.z), two * (q.y * q.z + q.w * q.x));
+    dem_vec3 z = v3(two * (q.x * q.z + q.w * q.y), two * (q.y * q.z - q.w * q.x), scale - two * (q.x * q.x + q.y * q.y));
     size_t at = t->float_first;
     *side = (dem_cull_side){.x = w->templates.x + at,
                             .y = w->templates.y + at,
@@ -65,6 +62,8 @@ static bool reserve(dem_candidates *c, size_t more)
 {
     if (c->count + more <= c->capacity)
         return true;
+    if (c->count + more > UINT32_MAX)
+        return false;  // 32 GB of them
     size_t capacity = (c->count + more) * 3 / 2 + 256;
     uint32_t *pairs = realloc(c->pairs, 2 * capacity * sizeof *pairs);
     if (!pairs)
@@ -85,7 +84,8 @@ static dem_vec3 offset_of(const dem_world *w, const dem_pair *p)
 }
 
 // the sphere pairs of two bodies by slabs
-static bool cull(const dem_world *w, const dem_pair *p, dem_vec3 d, double margin, dem_candidates *c, dem_fresh *out)
+static bool cull(const dem_world *w, dem_pair *p, dem_vec3 d, double margin, dem_candidates *c, dem_fresh *out,
+                 double *slack)
 {
     dem_cull_job job = {.offset = {(float)d.x, (float)d.y, (float)d.z}, .margin = (float)margin, .work = c->work};
     set_side(w, p->a, &job.a);
@@ -105,10 +105,10 @@ static bool cull(const dem_world *w, const dem_pair *p, dem_vec3 d, double margi
         if (job.count <= job.capacity)
             break;
     }
-    memcpy(out->normal, job.normal, sizeof normal);
-    out->count = job.count;
+    memcpy(p->normal, job.normal, sizeof normal);
+    out->count = (uint32_t)job.count;
     c->count += job.count;
-    out->slack = job.count == 0 && job.gap > margin ? job.gap : margin;
+    *slack = job.count == 0 && job.gap > margin ? job.gap : margin;
     return true;
 }
 
@@ -154,23 +154,42 @@ static bool sort_by_parts(const dem_world *w, const dem_pair *p, dem_candidates 
     return true;
 }
 
+// in whatever order threads come
+static void lower_limit(dem_world *w, uint32_t row, double limit)
+{
+    double *at = &w->bodies.limit[row], seen;
+    __atomic_load(at, &seen, __ATOMIC_RELAXED);
+    while (limit < seen && !__atomic_compare_exchange(at, &seen, &limit, true, __ATOMIC_RELAXED, __ATOMIC_RELAXED))
+        continue;
+}
+
+// each body's share of the slack in proportion to its stride
+static void share_slack(dem_world *w, const dem_pair *p, double slack, double stride_a, double stride_b)
+{
+    double even = 0.05 * (stride_a + stride_b) + 1e-30, share = (stride_a + even) / (stride_a + stride_b + 2 * even);
+    double limit_a = w->bodies.path[p->a] + slack * share, limit_b = w->bodies.path[p->b] + slack * (1 - share);
+    w->pairs.adjacency_limit[p->adjacent_a] = limit_a;
+    w->pairs.adjacency_limit[p->adjacent_b] = limit_b;
+    lower_limit(w, p->a, limit_a);
+    lower_limit(w, p->b, limit_b);
+}
+
+// writes of the pair and its limits, which no other thread has
 static bool look_at_pair(dem_world *w, dem_fresh *fresh)
 {
-    const dem_pair *p = &w->pairs.items[fresh->pair];
+    dem_pair *p = &w->pairs.items[fresh->pair];
     const dem_bodies *b = &w->bodies;
     dem_candidates *c = &w->candidates[fresh->thread];
     dem_vec3 d = offset_of(w, p);
-    double strides = body_stride(b, p->a, w->next_step) + body_stride(b, p->b, w->next_step);
-    double margin = dem_refresh_margin(w, p->a, p->b, strides) + w->ahead;
-    double apart = v3_norm(d) * (1 - 1e-14) - b->radius[p->a] - b->radius[p->b];
-    fresh->begin = c->count;
+    double stride_a = body_stride(b, p->a, w->next_step), stride_b = body_stride(b, p->b, w->next_step);
+    double margin = dem_refresh_margin(w, p->a, p->b, stride_a + stride_b) + w->ahead;
+    double apart = v3_norm(d) * (1 - 1e-14) - b->radius[p->a] - b->radius[p->b], slack = apart;
+    fresh->begin = (uint32_t)c->count;
     fresh->count = 0;
-    fresh->slack = apart;
-    memcpy(fresh->normal, p->normal, sizeof fresh->normal);
     if (apart < margin) {
         bool both_centred = w->templates.items[b->shape[p->a]].centred && w->templates.items[b->shape[p->b]].centred;
         if (!both_centred) {
-            if (!cull(w, p, d, margin, c, fresh))
+            if (!cull(w, p, d, margin, c, fresh, &slack))
                 return false;
         } else {
             if (!reserve(c, 1))
@@ -178,66 +197,94 @@ static bool look_at_pair(dem_world *w, dem_fresh *fresh)
             c->pairs[2 * c->count] = c->pairs[2 * c->count + 1] = 0;
             c->count++;
             fresh->count = 1;
-            fresh->slack = margin;
+            slack = margin;
         }
     }
     if (w->bonds && w->bonds->instead && fresh->count) {
         fresh->count = dem_bonds_mask(w, p, c->pairs + 2 * fresh->begin, fresh->count);
         c->count = fresh->begin + fresh->count;
     }
-    fresh->slack -= w->ahead;
     if (w->soft.part && !sort_by_parts(w, p, c, fresh))
         return false;
+    share_slack(w, p, slack - w->ahead, stride_a, stride_b);
     fresh->changed = !same_candidates(w, p, fresh);
-    if (!fresh->changed)
+    if (!fresh->changed) {
         c->count = fresh->begin;
-    return true;
-}
-
-static bool collect_expired(dem_world *w)
-{
-    const dem_bodies *b = &w->bodies;
-    dem_pairs *pairs = &w->pairs;
-    w->fresh_count = 0;
-    for (size_t k = 0; k < w->asked_count; k++) {
-        uint32_t row = w->asked[k];
-        if (k + AHEAD < w->asked_count)
-            __builtin_prefetch(&pairs->adjacency_limit[pairs->adjacency_first[w->asked[k + AHEAD]]]);
-        for (size_t i = pairs->adjacency_first[row]; i < pairs->adjacency_first[row + 1]; i++) {
-            uint32_t pair = pairs->adjacency[i];
-            // a pair that both bodies ask for is taken once
-            if (b->path[row] <= pairs->adjacency_limit[i] || pairs->fresh[pair])
-                continue;
-            if (!dem_grow(&w->fresh, &w->fresh_capacity, w->fresh_count, sizeof *w->fresh))
-                return false;
-            w->fresh[w->fresh_count++] = (dem_fresh){.pair = pair};
-            pairs->fresh[pair] = (uint32_t)w->fresh_count;
-        }
+        w->pairs.fresh[fresh->pair] = 0;
     }
     return true;
 }
 
-// each body's share of the slack in proportion to its speed
-static void apply(dem_world *w, dem_fresh *fresh, size_t index)
+// the expired pairs of a share of the bodies that ask, and limits as those say that have not expired
+static void expire_part(void *user, int part)
 {
-    dem_bodies *b = &w->bodies;
-    dem_pairs *pairs = &w->pairs;
-    dem_pair *p = &pairs->items[fresh->pair];
-    double va = body_stride(b, p->a, w->next_step), vb = body_stride(b, p->b, w->next_step);
-    double even = 0.05 * (va + vb) + 1e-30, share = (va + even) / (va + vb + 2 * even);
-    double limit_a = b->path[p->a] + fresh->slack * share, limit_b = b->path[p->b] + fresh->slack * (1 - share);
-    pairs->adjacency_limit[p->adjacent_a] = limit_a;
-    pairs->adjacency_limit[p->adjacent_b] = limit_b;
-    b->limit[p->a] = smaller(b->limit[p->a], limit_a);
-    b->limit[p->b] = smaller(b->limit[p->b], limit_b);
-    memcpy(p->normal, fresh->normal, sizeof p->normal);
-    if (fresh->changed) {
-        dem_segment *s = &w->contacts.segments[p->a / DEM_SEGMENT];
-        pairs->fresh[fresh->pair] = (uint32_t)index + 1;
-        fresh->next = s->changed;
-        s->changed = (uint32_t)index + 1;
-    } else
-        pairs->fresh[fresh->pair] = 0;
+    dem_world *w = user;
+    double *const limits = w->bodies.limit;
+    const dem_pairs *pairs = &w->pairs;
+    const double *pair_limits = pairs->adjacency_limit;
+    const uint32_t *first = pairs->adjacency_first;
+    size_t parts = (size_t)w->fresh_parts, count = w->asked_count;
+    if ((size_t)part >= parts)
+        return;
+    dem_candidates *c = &w->candidates[part];
+    c->expired_count = 0;
+    c->failed = false;
+    size_t end = count * ((size_t)part + 1) / parts;
+    for (size_t k = count * (size_t)part / parts; k < end; k++) {
+        uint32_t row = w->asked[k];
+        if (k + AHEAD < end)
+            __builtin_prefetch(&pair_limits[first[w->asked[k + AHEAD]]]);
+        double limit = own_limit(w, row), path = w->bodies.path[row];
+        for (size_t i = first[row], last = first[row + 1]; i < last; i++) {
+            if (path <= pair_limits[i]) {
+                limit = smaller(limit, pair_limits[i]);
+                continue;
+            }
+            if (!dem_grow(&c->expired, &c->expired_capacity, c->expired_count, sizeof *c->expired)) {
+                c->failed = true;
+                return;
+            }
+            c->expired[c->expired_count++] = pairs->adjacency[i];
+        }
+        limits[row] = limit;
+    }
+}
+
+static int parts_for(const dem_world *w, size_t count)
+{
+    return count > LOOKS_TO_SHARE ? w->threads : 1;
+}
+
+static void in_parts(dem_world *w, void (*work)(void *user, int part))
+{
+    if (w->fresh_parts > 1)
+        dem_team_run(w->team, work, w);
+    else
+        work(w, 0);
+}
+
+// a pair that both bodies ask for is taken once, by the one that comes first
+static bool collect_expired(dem_world *w)
+{
+    w->fresh_parts = parts_for(w, w->asked_count);
+    in_parts(w, expire_part);
+    w->fresh_count = 0;
+    for (int part = 0; part < w->fresh_parts; part++) {
+        const dem_candidates *c = &w->candidates[part];
+        if (c->failed)
+            return false;
+        for (size_t i = 0; i < c->expired_count; i++) {
+            uint32_t pair = c->expired[i];
+            if (w->pairs.fresh[pair])
+                continue;
+            if (!dem_grow(&w->fresh, &w->fresh_capacity, w->fresh_count, sizeof *w->fresh))
+                return false;
+            w->fresh[w->fresh_count++] = (dem_fresh){.pair = pair};
+            w->pairs.fresh[pair] = (uint32_t)w->fresh_count;
+            __builtin_prefetch(&w->pairs.items[pair]);
+        }
+    }
+    return true;
 }
 
 // what the looks to come will wait for: first the pair, then its bodies and its contacts' segment
@@ -270,26 +317,37 @@ static void look_at_part(void *user, int part)
     size_t end = count * ((size_t)part + 1) / parts;
     for (size_t i = count * (size_t)part / parts; i < end && !c->failed; i++) {
         fetch(w, i, end);
-        w->fresh[i].thread = (uint32_t)part;
+        w->fresh[i].thread = (uint16_t)part;
         c->failed = !look_at_pair(w, &w->fresh[i]);
     }
 }
 
 dem_status dem_refresh(dem_world *w, dem_error *error)
 {
-    bool good = collect_expired(w);
-    w->fresh_parts = w->fresh_count > PAIRS_TO_SHARE ? w->threads : 1;
-    if (w->fresh_parts > 1)
-        dem_team_run(w->team, look_at_part, w);
-    else
-        look_at_part(w, 0);
-    for (int part = 0; part < w->fresh_parts; part++)
-        good = good && !w->candidates[part].failed;
-    if (!good)
+    if (!collect_expired(w))
         return dem_fail_memory(error);
+    w->fresh_parts = parts_for(w, w->fresh_count);
+    in_parts(w, look_at_part);
+    for (int part = 0; part < w->fresh_parts; part++)
+        if (w->candidates[part].failed)
+            return dem_fail_memory(error);
     for (size_t i = 0; i < w->fresh_count; i++)
-        apply(w, &w->fresh[i], i);
-    for (size_t k = 0; k < w->asked_count; k++)
-        w->bodies.limit[w->asked[k]] = dem_refresh_limit(w, w->asked[k]);
+        if (w->fresh[i].changed) {
+            dem_segment *s = &w->contacts.segments[w->pairs.items[w->fresh[i].pair].a / DEM_SEGMENT];
+            w->fresh[i].next = s->changed;
+            s->changed = (uint32_t)i + 1;
+        }
     return DEM_OK;
+}
+
+void dem_refresh_forget(dem_world *w)
+{
+    for (int t = 0; w->candidates && t < w->threads; t++) {
+        free(w->candidates[t].pairs);
+        free(w->candidates[t].expired);
+        w->candidates[t] = (dem_candidates){.work = w->candidates[t].work};
+    }
+    free(w->fresh);
+    w->fresh = NULL;
+    w->fresh_capacity = w->fresh_count = 0;
 }

@@ -11,10 +11,11 @@
 /// marks the segments dirty whose lists change and leaves the new candidates in dem_world.fresh.
 dem_status dem_refresh(dem_world *world, dem_error *error);
 
+/// Lets go of the memory of a refresh. The first lists are of all pairs; later ones are of a few, and there are more who
+/// need the memory.
+void dem_refresh_forget(dem_world *world);
+
 /// The margin of two bodies that move so far in a step [m].
 double dem_refresh_margin(const dem_world *world, size_t a, size_t b, double strides);
-
-/// The least path limit of a body over its pairs, walls and the next search [m].
-double dem_refresh_limit(const dem_world *world, size_t row);
 
 #endif

@@ -28,14 +28,15 @@ enum {
 
 /// Columns of the bodies: type, name, numbers a body, unit, needed when (in terms of a world w), what it is. The list
 /// makes allocation, checkpoint, hash and --explain. Written by the motion pass (bodies, momentum, path), the lists
-/// (limits, path_then, wraps) and the contacts (momentum).
+/// (limits, then, wraps) and the contacts (momentum).
 #define DEM_BODY_COLUMNS(X)                                                                                            \
     X(double, bodies, 16, "m, -, m/s, rad/s", true, "pose and motion")                                                 \
     X(double, momentum, 8, "kg m/s, kg m2/s", true, "momenta, half a step before")                                     \
     X(double, inertia, 8, "1/kg, 1/(kg m2), m", true, "inverse mass and moments, reach")                               \
     X(double, path, 1, "m", true, "path of the fastest surface point")                                                 \
     X(double, limit, 1, "m", true, "path at which the lists are looked at")                                            \
-    X(double, path_then, 1, "m", true, "path at the last search for pairs")                                            \
+    X(double, search_limit, 1, "m", true, "path at which a search for pairs may be due")                               \
+    X(double, then, 3, "m", true, "centre at the last search for pairs")                                               \
     X(double, radius, 1, "m", true, "bounding radius")                                                                 \
     X(uint32_t, shape, 1, "-", true, "index of the shape")                                                             \
     X(double, wall_limit, 1, "m", (w)->walls.count > 0, "path at which the wall lists are looked at")                  \
@@ -111,16 +112,19 @@ typedef struct dem_candidates {
     uint32_t *pairs;  ///< [2 capacity] sphere of a, sphere of b, counted within their shapes
     size_t count, capacity;
     float *work;
+    uint32_t *expired;  ///< pairs to be looked at, some of them twice
+    size_t expired_count, expired_capacity;
     bool failed;
 } dem_candidates;
 
+/// A pair that is looked at: all are at the first lists, so it is small.
 typedef struct dem_fresh {
-    uint32_t pair, thread;
-    size_t begin, count;  ///< in the candidates of `thread`
-    double slack;         ///< path that may be used up before it is looked at again [m]
-    float normal[3];
-    bool changed;   ///< the set of candidates is another one
-    uint32_t next;  ///< 1 + index of the one before that changes the list of the same segment; 0: none
+    uint32_t pair;
+    uint32_t next;   ///< 1 + index of the one before that changes the list of the same segment; 0: none
+    uint32_t count;  ///< from `begin`, in the candidates of `thread`
+    uint16_t thread;
+    bool changed;  ///< the set of candidates is another one
+    uint32_t begin;
 } dem_fresh;
 
 typedef enum dem_pass {
@@ -207,7 +211,8 @@ struct dem_world {
     double reach;               ///< how far beyond the touch contacts may hold [m]
     double ahead;               ///< contacts are listed so much before they touch (soft) [m]
     dem_soft soft;
-    double skin, margin_least;  ///< of the search; of the candidates, by radius: see refresh.h [m]
+    double skin;                ///< of the last search: its pairs are nearer to each other [m]
+    double skin_least;          ///< of bodies that are slow [m]
     int threads;
     size_t domain_bodies;  ///< bodies of a domain: their momenta are written by one thread
     // state

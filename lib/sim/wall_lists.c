@@ -1,5 +1,5 @@
-// Bodies are looked at one by one, but lists are rebuilt by segment: the items of bodies that were not looked at are
-// taken over. A new list that equals the old one is dropped.
+// Bodies are looked at one by one, but lists are rebuilt by segment: where a body's items change, it is looked at again
+// for the new list, and the items of bodies that were not looked at are taken over.
 #include "sim/wall_lists.h"
 
 #include <stdlib.h>
@@ -53,12 +53,18 @@ static void look_at_part(wall_look *look, size_t row, uint32_t wall, double marg
     dem_vec3 x = body_position(&w->bodies, row);
     dem_quat q = body_orientation(&w->bodies, row);
     double scale = body_scale(&w->bodies, row);
+    bool plane = w->walls.items[wall].form == DEM_FORM_PLANE;
+    double level = plane ? dem_wall_distance(&w->walls, wall, x) : 0;
+    const double *n = w->walls.rows + DEM_WALL_ROW * wall;
+    dem_vec3 rise = plane ? v3_scale(quat_unrotate(q, v3(n[0], n[1], n[2])), scale) : v3(0, 0, 0);
     for (uint32_t i = shape->first; i < shape->first + shape->count; i++) {
         if (soft_part(&w->soft, i) != part)
             continue;
         const double *s = w->templates.spheres[i];
-        dem_vec3 centre = v3_add(x, quat_rotate(q, v3_scale(v3(s[0], s[1], s[2]), scale)));
-        double gap = dem_wall_distance(&w->walls, wall, centre) - s[3] * scale;
+        dem_vec3 own = v3(s[0], s[1], s[2]);
+        if (!plane)
+            level = dem_wall_distance(&w->walls, wall, v3_add(x, quat_rotate(q, v3_scale(own, scale))));
+        double gap = level + v3_dot(rise, own) - s[3] * scale;
         if (gap < margin) {
             dem_contact_item item = wall_item(w, row, i, wall);
             add_item(look, &item);
@@ -184,15 +190,40 @@ static void keep_touches(wall_look *look, size_t row, size_t old_begin, size_t b
         }
 }
 
-static bool same_list(const dem_contacts *contacts, const dem_segment *s, const dem_contact_item *items, size_t count)
+static bool same_items(const dem_contacts *contacts, const dem_segment *s, size_t begin, const dem_contact_item *items,
+                       size_t count)
 {
     for (size_t k = 0; k < count; k++) {
-        size_t at = segment_place(s, k);
-        if (contacts->columns.a[at] != items[k].a || contacts->columns.sphere_a[at] != items[k].sphere_a ||
-            contacts->columns.sphere_b[at] != items[k].sphere_b)
+        size_t at = segment_place(s, begin + k);
+        if (contacts->columns.sphere_a[at] != items[k].sphere_a || contacts->columns.sphere_b[at] != items[k].sphere_b)
             return false;
     }
     return true;
+}
+
+// whether all of the bodies that are looked at keep their items, so that the list stays as it is
+static bool nothing_new(wall_look *look, size_t segment, dem_wall_form form, const bool *looked, double *slack)
+{
+    dem_world *w = look->w;
+    const dem_contacts *contacts = &w->wall_contacts[form];
+    const dem_segment *s = &contacts->segments[segment];
+    size_t row = segment * DEM_SEGMENT, k = 0, size = s->end - s->begin, begin = look->count;
+    new_list none = {.segment = segment, .form = form, .begin = begin};
+    bool same = form != DEM_FORM_MESH;
+    for (size_t i = 0; same && i < DEM_SEGMENT; i++, row++) {
+        if (!looked[i])
+            continue;
+        look_at_body(look, row, &none, &slack[i]);
+        while (k < size && contacts->columns.a[segment_place(s, k)] < row)
+            k++;
+        size_t end = k;
+        while (end < size && contacts->columns.a[segment_place(s, end)] == row)
+            end++;
+        same = !look->failed && look->count - begin == end - k && same_items(contacts, s, k, look->items + begin, end - k);
+        look->count = begin;
+        k = end;
+    }
+    return same;
 }
 
 static void look_at_form(wall_look *look, size_t segment, dem_wall_form form, const bool *looked, double *slack)
@@ -202,6 +233,8 @@ static void look_at_form(wall_look *look, size_t segment, dem_wall_form form, co
     const dem_segment *s = &contacts->segments[segment];
     size_t rows = segment * DEM_SEGMENT, end = rows + DEM_SEGMENT, old = 0, size = s->end - s->begin;
     end = end < w->bodies.count ? end : w->bodies.count;
+    if (nothing_new(look, segment, form, looked, slack))
+        return;
     new_list list = {.segment = segment, .form = form, .begin = look->count};
     for (size_t row = rows; row < end && !look->failed; row++) {
         size_t from = old, begin = look->count;
@@ -228,11 +261,7 @@ static void look_at_form(wall_look *look, size_t segment, dem_wall_form form, co
         }
     }
     list.count = look->count - list.begin;
-    bool same = form != DEM_FORM_MESH && list.count == old;
-    same = same && (old == 0 || same_list(contacts, s, look->items + list.begin, old));
-    if (same)
-        look->count = list.begin;
-    else if (dem_grow(&look->lists, &look->list_capacity, look->list_count, sizeof list))
+    if (dem_grow(&look->lists, &look->list_capacity, look->list_count, sizeof list))
         look->lists[look->list_count++] = list;
     else
         look->failed = true;

@@ -12,6 +12,7 @@
 #include "sim/motion.h"
 #include "sim/place.h"
 #include "sim/population.h"
+#include "sim/refresh.h"
 #include "sim/scene.h"
 #include "sim/schemes.h"
 #include "sim/servo.h"
@@ -245,7 +246,7 @@ static dem_status make_state(dem_world *w, const dem_scene *scene, dem_scene *sp
         return dem_fail_memory(error);
     DEM_TRY(dem_soft_create(w, scene->soft.tau, error));
     DEM_TRY(set_reach(w, error));
-    w->skin = larger(larger(dem_broad_skin(w), 2.2 * w->reach), 1.1 * dem_bonds_gap(w));
+    w->skin = w->skin_least = larger(larger(dem_broad_skin(w), 2.2 * w->reach), 1.1 * dem_bonds_gap(w));
     DEM_TRY(dem_search_create(w, error));
     if (w->periodic)
         DEM_TRY(dem_broad_images(w, error));
@@ -348,10 +349,9 @@ void dem_world_destroy(dem_world *w)
         dem_contacts_release(&w->wall_contacts[form], w->segment_count);
     for (size_t i = 0; w->mesh_touches && i < w->segment_count; i++)
         dem_mesh_touches_release(&w->mesh_touches[i]);
-    for (int t = 0; w->candidates && t < w->threads; t++) {
-        free(w->candidates[t].pairs);
+    dem_refresh_forget(w);
+    for (int t = 0; w->candidates && t < w->threads; t++)
         free(w->candidates[t].work);
-    }
     dem_soft_release(w);
     for (size_t i = 0; w->wear_events && w->walls.wear && i < w->segment_count; i++)
         free(w->wear_events[i].items);
@@ -360,7 +360,7 @@ void dem_world_destroy(dem_world *w)
     dem_regions_release(w->regions);
     dem_bonds_release(w->bonds);
     void *all[] = {w->clumps,         w->shape_names, w->shifts,     w->mesh_touches, w->tallies,
-                   w->motion_tallies, w->asked,       w->part_asked, w->parts,        w->fresh,
+                   w->motion_tallies, w->asked,       w->part_asked, w->parts,
                    w->candidates,     w->pushes,      w->strained,   w->part_strained, w->servo_sums, w->wear_events};
     for (size_t i = 0; i < sizeof all / sizeof *all; i++)
         free(all[i]);
