@@ -61,7 +61,8 @@ static void greedy_takes_the_ball_of_the_largest_gain_each_time(void **state)
     for (int threads = 1; threads <= 3; threads++) {
         dem_crew *crew = dem_crew_create(threads);
         dem_ball *to = threads > 1 ? again : chosen;
-        check_ok(dem_candidates_greedy(&candidates, &lattice, kernels, inflations, 2, 10, crew, to, &count, &error), error);
+        check_ok(dem_candidates_greedy(&candidates, &lattice, kernels, inflations, 2, 10, crew, to, &count, &error),
+                 error);
         dem_crew_destroy(crew);
         check(count == 10);
         check(memcmp(to, chosen, sizeof chosen) == 0);
