@@ -133,7 +133,8 @@ static dem_status measure_one(measuring *m, int part, dem_error *error)
     case HULL: return dem_shape_part(&m->shape, DEM_SHAPE_HULL, 1, error);
     case UNION: return dem_balls_union(m->work->pack.balls, m->work->pack.count, &m->balls, error);
     default:
-        return m->surface_triangles ? dem_mesh_decimate(m->mesh, m->surface_triangles, &m->work->surface, error) : DEM_OK;
+        return m->surface_triangles ? dem_mesh_decimate(m->mesh, m->surface_triangles, &m->work->surface, error)
+                                    : DEM_OK;
     }
 }
 
