@@ -109,6 +109,7 @@ static void the_cost_of_removing_a_ball_is_what_the_energy_rises_by(void **state
     fixture f;
     dem_error error;
     open_fixture(&f, NULL, 1);
+    check_ok(dem_pack_assign(&f.p, &f.state, &error), error);
     check_ok(dem_pack_removal_costs(&f.p, &f.state, &error), error);
     double energy = 0, want[BALLS] = {0};
     for (size_t k = 0; k < f.p.samples.block_count * DEM_BLOCK; k++) {

@@ -56,10 +56,17 @@ static void greedy_takes_the_ball_of_the_largest_gain_each_time(void **state)
     const dem_pack_kernels *kernels = dem_pack_kernels_choose(NULL);
     check_ok(dem_candidates_build(&grain, &samples, kernels, 200, 1, &candidates, &error), error);
     const double inflations[2] = {0, 0.02};
-    dem_ball chosen[10];
+    dem_ball chosen[10], again[10];
     size_t count;
-    check_ok(dem_candidates_greedy(&candidates, &lattice, kernels, inflations, 2, 10, 1, chosen, &count, &error), error);
-    check(count == 10);
+    for (int threads = 1; threads <= 3; threads++) {
+        dem_crew *crew = dem_crew_create(threads);
+        dem_ball *to = threads > 1 ? again : chosen;
+        check_ok(dem_candidates_greedy(&candidates, &lattice, kernels, inflations, 2, 10, crew, to, &count, &error),
+                 error);
+        dem_crew_destroy(crew);
+        check(count == 10);
+        check(memcmp(to, chosen, sizeof chosen) == 0);
+    }
     dem_lattice_clear(&lattice);
     for (size_t k = 0; k < count; k++) {
         int64_t most = 0, taken = kernels->lattice_gain(&lattice, chosen[k], NULL);

@@ -7,7 +7,6 @@
 #include "base/memory.h"
 #include "clump/deviation.h"
 #include "geom/boundary.h"
-#include "geom/lines.h"
 #include "geom/tree.h"
 #include "math/quat.h"
 
@@ -16,23 +15,17 @@ enum { FIRST_LINES = 16000, MOST_LINES = 1024000, SAMPLES = 20000, SAMPLES_PER_B
 
 static const dem_quat TURN = {0.74, 0.36, -0.42, 0.38};  // nothing special about it
 
-typedef struct subject {
-    dem_solid solid;  // of the mesh as given
-    double size;      // d_eq as given [m]
-    dem_vec3 *vertices;
-    dem_ball *balls;
-    dem_line_bodies bodies;
-} subject;
-
-static void subject_release(subject *s)
+static void subject_release(dem_fidelity_work *s)
 {
     free(s->vertices);
     free(s->balls);
+    *s = (dem_fidelity_work){0};
 }
 
-static dem_status subject_make(subject *s, const dem_mesh *mesh, const dem_ball *balls, size_t count, dem_error *error)
+static dem_status subject_make(dem_fidelity_work *s, const dem_mesh *mesh, const dem_ball *balls, size_t count,
+                               dem_error *error)
 {
-    *s = (subject){0};
+    *s = (dem_fidelity_work){0};
     if (mesh->triangle_count == 0 || count == 0)
         return dem_fail(error, DEM_USAGE, "nothing to compare; give a mesh with faces and at least one sphere");
     DEM_TRY(dem_balls_check(balls, count, error));
@@ -59,7 +52,7 @@ static dem_status subject_make(subject *s, const dem_mesh *mesh, const dem_ball 
 }
 
 // symmetric difference of mesh and union, and the standard error of it, from about `lines` lines in each bundle
-static dem_status difference(const subject *s, double lines, int threads, double *volume, double *deviation,
+static dem_status difference(const dem_fidelity_work *s, double lines, int threads, double *volume, double *deviation,
                              dem_error *error)
 {
     static const dem_vec3 axes[3] = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
@@ -85,31 +78,41 @@ static dem_status difference(const subject *s, double lines, int threads, double
     return DEM_OK;
 }
 
-// the volumes of both are exact, the lines only measure where they differ
-static dem_status gap_measure(const subject *s, double union_volume, size_t lines, int threads, double *gap,
-                              double *error_estimate, dem_error *error)
+// the volume where the two differ and its standard error, relative
+static dem_status difference_settled(const dem_fidelity_work *s, size_t lines, int threads, double *volume,
+                                     double *error_estimate, dem_error *error)
 {
-    double volume, deviation, count = lines ? (double)lines : FIRST_LINES;
-    DEM_TRY(difference(s, count, threads, &volume, &deviation, error));
-    while (!lines && deviation > GAP_ERROR * volume && count < MOST_LINES) {
-        count *= fmin(8, fmax(2, pow(deviation / (GAP_ERROR * volume), 1.5)));
-        DEM_TRY(difference(s, count, threads, &volume, &deviation, error));
+    double deviation, count = lines ? (double)lines : FIRST_LINES;
+    DEM_TRY(difference(s, count, threads, volume, &deviation, error));
+    while (!lines && deviation > GAP_ERROR * *volume && count < MOST_LINES) {
+        count *= fmin(8, fmax(2, pow(deviation / (GAP_ERROR * *volume), 1.5)));
+        DEM_TRY(difference(s, count, threads, volume, &deviation, error));
     }
-    *gap = volume / ((DEM_PI / 6 + union_volume + volume) / 2);
-    if (error_estimate)
-        *error_estimate = volume > 0 ? deviation / volume : 0;
+    *error_estimate = *volume > 0 ? deviation / *volume : 0;
     return DEM_OK;
+}
+
+// the volumes of both are exact, the lines only measure where they differ
+static double gap_of(double difference_volume, double union_volume)
+{
+    return difference_volume / ((DEM_PI / 6 + union_volume + difference_volume) / 2);
 }
 
 dem_status dem_fidelity_gap(const dem_ctx *ctx, const dem_mesh *mesh, const dem_ball *balls, size_t count, size_t lines,
                             double *gap, double *error_estimate, dem_error *error)
 {
-    subject s;
+    dem_fidelity_work s;
     dem_ball_union whole;
+    double volume, spread;
     DEM_TRY(subject_make(&s, mesh, balls, count, error));
     dem_status status = dem_ball_union_compute(s.balls, count, false, 1, &whole, error);
     if (status == DEM_OK) {
-        status = gap_measure(&s, whole.moments.volume, lines, dem_threads(ctx), gap, error_estimate, error);
+        status = difference_settled(&s, lines, dem_threads(ctx), &volume, &spread, error);
+        if (status == DEM_OK) {
+            *gap = gap_of(volume, whole.moments.volume);
+            if (error_estimate)
+                *error_estimate = spread;
+        }
         dem_ball_union_release(&whole);
     }
     subject_release(&s);
@@ -117,7 +120,7 @@ dem_status dem_fidelity_gap(const dem_ctx *ctx, const dem_mesh *mesh, const dem_
 }
 
 // the figures of the exact solids
-static void masses_compare(const subject *s, const dem_ball_union *whole, dem_fidelity *f)
+static void masses_compare(const dem_fidelity_work *s, const dem_ball_union *whole, dem_fidelity *f)
 {
     dem_solid balls = dem_solid_from_moments(whole->moments, v3(0, 0, 0), whole->area);
     double mesh_volume = DEM_PI / 6, sum = 0, scale = pow(s->size, 5);
@@ -132,43 +135,69 @@ static void masses_compare(const subject *s, const dem_ball_union *whole, dem_fi
     f->pieces = dem_ball_pieces(s->balls, s->bodies.ball_count, 0, NULL);
 }
 
+// masses and distances
+static dem_status surfaces_compare(dem_fidelity_work *s, int threads, dem_error *error)
+{
+    dem_boundary boundary;
+    dem_tree tree;
+    dem_deviation d;
+    dem_fidelity *f = s->fidelity;
+    size_t count = s->bodies.ball_count;
+    DEM_TRY(dem_boundary_build(&boundary, s->balls, count, error));
+    s->union_volume = boundary.whole.moments.volume;
+    masses_compare(s, &boundary.whole, f);
+    dem_status status = f->pieces ? DEM_OK : dem_fail_memory(error);
+    if (status == DEM_OK)
+        status = dem_tree_build(&tree, s->vertices, s->bodies.triangles, s->bodies.triangle_count, error);
+    if (status == DEM_OK) {
+        // small patches need denser samples
+        size_t points = count < MOST_SAMPLES / SAMPLES_PER_BALL ? count * SAMPLES_PER_BALL : MOST_SAMPLES;
+        points = s->samples ? s->samples : points > SAMPLES ? points : SAMPLES;
+        status = dem_deviation_measure(&tree, &boundary, points, threads, &d, error);
+        dem_tree_release(&tree);
+    }
+    if (status == DEM_OK) {
+        f->distance_mean = (d.mesh_mean + d.union_mean) / 2;
+        f->distance_max = d.largest;
+        f->protrusion = d.protrusion;
+        f->normal_deviation_deg = d.normal_deg;
+    }
+    dem_boundary_release(&boundary);
+    return status;
+}
+
+dem_status dem_fidelity_begin(const dem_mesh *mesh, const dem_ball *balls, size_t count, size_t samples,
+                              dem_fidelity *fidelity, dem_fidelity_work *work, dem_error *error)
+{
+    *fidelity = (dem_fidelity){0};
+    DEM_TRY(subject_make(work, mesh, balls, count, error));
+    work->fidelity = fidelity;
+    work->samples = samples;
+    return DEM_OK;
+}
+
+dem_status dem_fidelity_part(dem_fidelity_work *work, int part, int threads, dem_error *error)
+{
+    double spread;
+    return part == DEM_FIDELITY_GAP
+               ? difference_settled(work, work->samples, threads, &work->difference, &spread, error)
+               : surfaces_compare(work, threads, error);
+}
+
+void dem_fidelity_end(dem_fidelity_work *work)
+{
+    if (work->fidelity)
+        work->fidelity->iou_gap = gap_of(work->difference, work->union_volume);
+    subject_release(work);
+}
+
 dem_status dem_fidelity_measure(const dem_ctx *ctx, const dem_mesh *mesh, const dem_ball *balls, size_t count,
                                 size_t samples, dem_fidelity *fidelity, dem_error *error)
 {
-    subject s;
-    dem_boundary boundary = {0};
-    dem_tree tree = {0};
-    dem_deviation d;
-    *fidelity = (dem_fidelity){0};
-    DEM_TRY(subject_make(&s, mesh, balls, count, error));
-    int threads = dem_threads(ctx);
-    dem_status status = dem_boundary_build(&boundary, s.balls, count, error);
-    if (status != DEM_OK)
-        goto done;
-    masses_compare(&s, &boundary.whole, fidelity);
-    if (fidelity->pieces == 0) {
-        status = dem_fail_memory(error);
-        goto done;
-    }
-    status = gap_measure(&s, boundary.whole.moments.volume, samples, threads, &fidelity->iou_gap, NULL, error);
-    if (status != DEM_OK)
-        goto done;
-    status = dem_tree_build(&tree, s.vertices, mesh->triangles, mesh->triangle_count, error);
-    if (status != DEM_OK)
-        goto done;
-    // small patches need denser samples
-    size_t points = count < MOST_SAMPLES / SAMPLES_PER_BALL ? count * SAMPLES_PER_BALL : MOST_SAMPLES;
-    points = samples ? samples : points > SAMPLES ? points : SAMPLES;
-    status = dem_deviation_measure(&tree, &boundary, points, threads, &d, error);
-    if (status != DEM_OK)
-        goto done;
-    fidelity->distance_mean = (d.mesh_mean + d.union_mean) / 2;
-    fidelity->distance_max = d.largest;
-    fidelity->protrusion = d.protrusion;
-    fidelity->normal_deviation_deg = d.normal_deg;
-done:
-    dem_tree_release(&tree);
-    dem_boundary_release(&boundary);
-    subject_release(&s);
+    dem_fidelity_work work;
+    dem_status status = dem_fidelity_begin(mesh, balls, count, samples, fidelity, &work, error);
+    for (int part = 0; part < DEM_FIDELITY_PARTS && status == DEM_OK; part++)
+        status = dem_fidelity_part(&work, part, dem_threads(ctx), error);
+    dem_fidelity_end(&work);
     return status;
 }

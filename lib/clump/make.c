@@ -3,10 +3,13 @@
 #include <stdlib.h>
 
 #include "base/clock.h"
+#include "base/crew.h"
 #include "base/memory.h"
 #include "base/text.h"
+#include "clump/fidelity.h"
 #include "clump/make.h"
 #include "clump/pack.h"
+#include "clump/shape_parts.h"
 #include "math/quat.h"
 #include "mesh/decimate.h"
 
@@ -34,14 +37,19 @@ static void to_clump_frame(dem_vec3 *point, dem_vec3 position, dem_quat orientat
     *point = quat_unrotate(orientation, v3_sub(*point, position));
 }
 
+static void surface_to_clump_frame(const dem_clump_def *def, dem_mesh *surface)
+{
+    for (size_t i = 0; i < surface->vertex_count; i++)
+        to_clump_frame(&surface->vertices[i], def->position, def->orientation);
+}
+
 dem_status dem_make_surface(const dem_mesh *mesh, size_t triangles, const dem_clump_def *def, dem_mesh *surface,
                             dem_error *error)
 {
     if (triangles == 0)
         return DEM_OK;
     DEM_TRY(dem_mesh_decimate(mesh, triangles, surface, error));
-    for (size_t i = 0; i < surface->vertex_count; i++)
-        to_clump_frame(&surface->vertices[i], def->position, def->orientation);
+    surface_to_clump_frame(def, surface);
     return DEM_OK;
 }
 
@@ -99,6 +107,69 @@ static void set_mass(dem_clump_def *def, const dem_solid *mesh, const dem_union 
     }
 }
 
+// ---- measuring: nothing of it needs anything else, so it is shared out, what takes longest first
+
+enum { DISTANCES, CORNERS, GAP, BOX, UNION, HULL, SURFACE, MEASURES };
+
+typedef struct measuring {
+    const dem_mesh *mesh;
+    size_t surface_triangles;
+    make_work *work;
+    dem_union balls;
+    dem_fidelity_work fidelity;
+    dem_shape_work shape;
+    int threads;      // of the distances, which take longest
+    dem_status status[MEASURES];
+    dem_error error[MEASURES];
+} measuring;
+
+static dem_status measure_one(measuring *m, int part, dem_error *error)
+{
+    switch (part) {
+    case DISTANCES: return dem_fidelity_part(&m->fidelity, DEM_FIDELITY_SURFACES, m->threads, error);
+    case GAP: return dem_fidelity_part(&m->fidelity, DEM_FIDELITY_GAP, 1, error);
+    case CORNERS: return dem_shape_part(&m->shape, DEM_SHAPE_CORNERS, 1, error);
+    case BOX: return dem_shape_part(&m->shape, DEM_SHAPE_BOX, 1, error);
+    case HULL: return dem_shape_part(&m->shape, DEM_SHAPE_HULL, 1, error);
+    case UNION: return dem_balls_union(m->work->pack.balls, m->work->pack.count, &m->balls, error);
+    default:
+        return m->surface_triangles ? dem_mesh_decimate(m->mesh, m->surface_triangles, &m->work->surface, error)
+                                    : DEM_OK;
+    }
+}
+
+static void measure_part(void *user, int part)
+{
+    measuring *m = user;
+    m->status[part] = measure_one(m, part, &m->error[part]);
+}
+
+// the clump's errors and shape, the union of its balls, and the surface in the frame of the mesh
+static dem_status measure(const dem_ctx *ctx, const dem_mesh *mesh, const dem_make_options *options, make_work *work,
+                          dem_clump_def *def, dem_union *balls, dem_error *error)
+{
+    enum { TOGETHER = 4 };
+    int threads = dem_threads(ctx), hands = threads < TOGETHER ? threads : TOGETHER;
+    measuring m = {.mesh = mesh, .surface_triangles = options->surface_triangles, .work = work,
+                   .threads = threads - hands + 1};
+    dem_status status =
+        dem_fidelity_begin(mesh, work->pack.balls, work->pack.count, 0, &def->fidelity, &m.fidelity, error);
+    if (status == DEM_OK)
+        status = dem_shape_begin(mesh, &def->shape, &m.shape, error);
+    if (status == DEM_OK) {
+        dem_crew *crew = dem_crew_create(hands);
+        dem_crew_run(crew, MEASURES, measure_part, &m);
+        dem_crew_destroy(crew);
+        for (int part = 0; part < MEASURES && status == DEM_OK; part++)
+            if ((status = m.status[part]) != DEM_OK && error)
+                *error = m.error[part];
+    }
+    dem_fidelity_end(&m.fidelity);
+    dem_shape_end(ctx, &m.shape);
+    *balls = m.balls;
+    return status;
+}
+
 static dem_status make(const dem_ctx *ctx, const dem_mesh *mesh, const dem_make_options *options, make_work *work,
                        dem_clump **clump, dem_error *error)
 {
@@ -116,16 +187,11 @@ static dem_status make(const dem_ctx *ctx, const dem_mesh *mesh, const dem_make_
     dem_laps_begin(&laps);
     DEM_TRY(dem_clump_pack(ctx, mesh, &packing, &work->pack, error));
     dem_laps_end(&laps, "packing");
-    DEM_TRY(dem_balls_union(work->pack.balls, work->pack.count, &balls, error));
+    DEM_TRY(measure(ctx, mesh, options, work, &def, &balls, error));
     dem_solid solid = dem_mesh_solid(mesh);
     set_mass(&def, &solid, &balls, options);
-    dem_laps_end(&laps, "mass");
-    DEM_TRY(dem_fidelity_measure(ctx, mesh, work->pack.balls, work->pack.count, 0, &def.fidelity, error));
-    dem_laps_end(&laps, "fidelity");
-    DEM_TRY(dem_shape_measure(ctx, mesh, &def.shape, error));
-    dem_laps_end(&laps, "shape");
-    DEM_TRY(dem_make_surface(mesh, options->surface_triangles, &def, &work->surface, error));
-    dem_laps_end(&laps, "surface");
+    surface_to_clump_frame(&def, &work->surface);
+    dem_laps_end(&laps, "measuring");
     dem_laps_log(&laps, ctx, "clump");
 
     work->balls = dem_alloc(work->pack.count, sizeof *work->balls);

@@ -149,15 +149,33 @@ static void assign_part(void *user, int part)
         assign_chunk(s->p, chunk, s->state);
 }
 
+// lists will be made of the balls as they are now
+static void begin_lists(dem_packing *p, const dem_pack_state *state)
+{
+    p->near_slack = slack;
+    p->near_moved = 0;
+    p->near_balls = state->count;
+    memcpy(p->near_at, state->balls, state->count * sizeof *p->near_at);
+}
+
+// Do the lists hold, of balls of the same numbers? Sets p->near_moved.
+static bool lists_hold(dem_packing *p, const dem_pack_state *state)
+{
+    double farthest = 0;
+    for (size_t i = 0; i < state->count; i++) {
+        const dem_ball *now = &state->balls[i], *then = &p->near_at[i];
+        farthest = fmax(farthest, v3_distance(now->centre, then->centre) + fabs(now->radius - then->radius));
+    }
+    p->near_moved = farthest;
+    return 2 * farthest <= p->near_slack * (1 - 1e-3);
+}
+
 static dem_status assign(dem_packing *p, dem_pack_state *state, bool make_lists, dem_error *error)
 {
     DEM_ASSERT(state->count > 0);
     dem_ball_columns_set(&p->columns, state->balls, state->count);
-    if (make_lists) {
-        p->near_slack = slack;
-        p->near_moved = 0;
-        memcpy(p->near_at, state->balls, state->count * sizeof *p->near_at);
-    }
+    if (make_lists)
+        begin_lists(p, state);
     dem_crew_run(p->crew, DEM_CHUNKS, assign_part, &(shared){p, state, make_lists});
     if (any_failed(p))
         return dem_fail_memory(error);
@@ -172,13 +190,7 @@ dem_status dem_pack_assign(dem_packing *p, dem_pack_state *state, dem_error *err
 
 dem_status dem_pack_assign_moved(dem_packing *p, dem_pack_state *state, dem_error *error)
 {
-    double farthest = 0;
-    for (size_t i = 0; i < state->count; i++) {
-        const dem_ball *now = &state->balls[i], *then = &p->near_at[i];
-        farthest = fmax(farthest, v3_distance(now->centre, then->centre) + fabs(now->radius - then->radius));
-    }
-    p->near_moved = farthest;
-    return assign(p, state, 2 * farthest > p->near_slack * (1 - 1e-3), error);
+    return assign(p, state, !lists_hold(p, state), error);
 }
 
 // what the samples of a chunk would be charged more without their nearest ball
@@ -200,13 +212,23 @@ static void charge_removal(dem_packing *p, dem_pack_chunk *chunk, dem_pack_state
 static void removal_part(void *user, int part)
 {
     const shared *s = user;
-    charge_removal(s->p, &s->p->chunks[part], s->state);
+    dem_pack_chunk *chunk = &s->p->chunks[part];
+    if (s->make_lists)
+        list_near(s->p, chunk);
+    if (!chunk->failed)
+        charge_removal(s->p, chunk, s->state);
 }
 
 dem_status dem_pack_removal_costs(dem_packing *p, dem_pack_state *state, dem_error *error)
 {
-    DEM_TRY(assign(p, state, true, error));
-    dem_crew_run(p->crew, DEM_CHUNKS, removal_part, &(shared){p, state, false});
+    DEM_ASSERT(state->count > 0);
+    dem_ball_columns_set(&p->columns, state->balls, state->count);
+    bool make_lists = p->near_balls != state->count || !lists_hold(p, state);
+    if (make_lists)
+        begin_lists(p, state);
+    dem_crew_run(p->crew, DEM_CHUNKS, removal_part, &(shared){p, state, make_lists});
+    if (any_failed(p))
+        return dem_fail_memory(error);
     for (size_t i = 0; i < state->count; i++)
         p->cost[i] = 0;
     for (size_t i = 0; i < p->samples.block_count * DEM_BLOCK; i++)

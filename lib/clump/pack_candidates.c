@@ -204,8 +204,10 @@ void dem_candidates_release(dem_candidates *candidates)
 }
 
 typedef struct offer {
-    int64_t gain;
     dem_ball ball;
+    int64_t gain;     // or more, as others have been taken
+    int64_t now;      // the gain when there were `taken` others
+    uint32_t taken;
 } offer;
 
 // a heap whose first offer has the largest gain
@@ -222,47 +224,96 @@ static void sink(offer *heap, size_t count, size_t at)
     heap[at] = moving;
 }
 
-// lazy greedy (Minoux 1978): a gain is only computed again when its offer comes to the top
-static size_t take_best(offer *heap, size_t count, dem_lattice *lattice, const dem_pack_kernels *kernels, size_t most,
-                        dem_ball *chosen)
+enum { OFFERS_AT_ONCE = 64, NEXT = 6 };
+
+// what the crew shares: offers whose gains are to be computed
+typedef struct offers {
+    offer *heap;
+    size_t count;
+    uint32_t taken;
+    size_t next[NEXT];
+    dem_lattice *lattice;
+    const dem_pack_kernels *kernels;
+} offers;
+
+static void compute_gains(void *user, int part)
 {
-    size_t taken = 0;
-    for (size_t i = count / 2; i-- > 0;)
-        sink(heap, count, i);
-    while (taken < most && count > 0) {
-        int64_t gain = kernels->lattice_gain(lattice, heap[0].ball, NULL);
-        if (gain < heap[0].gain) {
-            heap[0].gain = gain;
-            sink(heap, count, 0);
+    const offers *o = user;
+    size_t end = ((size_t)part + 1) * OFFERS_AT_ONCE;
+    for (size_t i = (size_t)part * OFFERS_AT_ONCE; i < end && i < o->count; i++)
+        o->heap[i].gain = o->heap[i].now = o->kernels->lattice_gain(o->lattice, o->heap[i].ball, NULL);
+}
+
+static void compute_next(void *user, int part)
+{
+    const offers *o = user;
+    offer *one = &o->heap[o->next[part]];
+    if (one->taken == o->taken)
+        return;
+    one->now = o->kernels->lattice_gain(o->lattice, one->ball, NULL);
+    one->taken = o->taken;
+}
+
+// the offers that come to the top one after the other if each of them sinks far enough
+static int list_next(offers *o, int most)
+{
+    size_t open[NEXT + 2] = {0};
+    int count = 0, open_count = 1;
+    while (count < most && open_count > 0) {
+        int best = 0;
+        for (int k = 1; k < open_count; k++)
+            best = o->heap[open[k]].gain > o->heap[open[best]].gain ? k : best;
+        size_t at = open[best], child = 2 * at + 1;
+        o->next[count++] = at;
+        open[best] = open[--open_count];
+        for (size_t k = child; k < child + 2 && k < o->count; k++)
+            open[open_count++] = k;
+    }
+    return count;
+}
+
+// Lazy greedy (Minoux 1978): a gain is only computed again when its offer comes to the top; where others help, those of
+// the offers that may come there next at the same time.
+static size_t take_best(offers *o, dem_crew *crew, size_t most, dem_ball *chosen)
+{
+    offer *heap = o->heap;
+    for (size_t i = o->count / 2; i-- > 0;)
+        sink(heap, o->count, i);
+    while (o->taken < most && o->count > 0) {
+        if (heap[0].taken != o->taken)
+            dem_crew_run(crew, list_next(o, crew ? NEXT : 1), compute_next, o);
+        if (heap[0].now < heap[0].gain) {
+            heap[0].gain = heap[0].now;
+            sink(heap, o->count, 0);
             continue;
         }
-        if (gain <= 0)
+        if (heap[0].now <= 0)
             break;
-        kernels->lattice_gain(lattice, heap[0].ball, lattice->covered);
-        chosen[taken++] = heap[0].ball;
-        heap[0] = heap[--count];
-        sink(heap, count, 0);
+        o->kernels->lattice_gain(o->lattice, heap[0].ball, o->lattice->covered);
+        chosen[o->taken++] = heap[0].ball;
+        heap[0] = heap[--o->count];
+        sink(heap, o->count, 0);
     }
-    return taken;
+    return o->taken;
 }
 
 dem_status dem_candidates_greedy(const dem_candidates *candidates, dem_lattice *lattice,
                                  const dem_pack_kernels *kernels, const double *inflations, size_t inflation_count,
-                                 size_t most, int threads, dem_ball *chosen, size_t *chosen_count,
+                                 size_t most, dem_crew *crew, dem_ball *chosen, size_t *chosen_count,
                                  dem_error *error)
 {
     size_t count = candidates->count * inflation_count;
-    offer *heap = dem_alloc(count, sizeof *heap);
-    if (!heap)
+    offers o = {.heap = dem_alloc(count, sizeof *o.heap), .count = count, .lattice = lattice, .kernels = kernels};
+    if (!o.heap)
         return dem_fail_memory(error);
     dem_lattice_clear(lattice);
-#pragma omp parallel for num_threads(threads) schedule(dynamic, 64)
     for (size_t i = 0; i < count; i++) {
-        dem_ball ball = candidates->balls[i / inflation_count];
-        ball.radius += inflations[i % inflation_count];
-        heap[i] = (offer){kernels->lattice_gain(lattice, ball, NULL), ball};
+        o.heap[i] = (offer){.ball = candidates->balls[i / inflation_count]};
+        o.heap[i].ball.radius += inflations[i % inflation_count];
     }
-    *chosen_count = take_best(heap, count, lattice, kernels, most, chosen);
-    free(heap);
+    int parts = (int)((count + OFFERS_AT_ONCE - 1) / OFFERS_AT_ONCE);
+    dem_crew_run(crew, parts, compute_gains, &o);
+    *chosen_count = take_best(&o, crew, most, chosen);
+    free(o.heap);
     return DEM_OK;
 }

@@ -2,6 +2,7 @@
 #ifndef DEM_CLUMP_PACK_CANDIDATES_H
 #define DEM_CLUMP_PACK_CANDIDATES_H
 
+#include "base/crew.h"
 #include "clump/pack_kernels.h"
 
 typedef struct dem_candidates {
@@ -23,7 +24,7 @@ void dem_candidates_release(dem_candidates *candidates);
 /// symmetric difference on the lattice most, until none does.
 dem_status dem_candidates_greedy(const dem_candidates *candidates, dem_lattice *lattice,
                                  const dem_pack_kernels *kernels, const double *inflations, size_t inflation_count,
-                                 size_t most, int threads, dem_ball *chosen, size_t *chosen_count,
+                                 size_t most, dem_crew *crew, dem_ball *chosen, size_t *chosen_count,
                                  dem_error *error);
 
 #endif

@@ -3,6 +3,9 @@
 #include "clump/pack_kernels.h"
 
 #include "base/level.h"
+#include "base/simd.h"
+
+enum { WIDTH = DEM_WIDTH_FLOAT, PARTS = DEM_BLOCK / WIDTH };  // of the samples of a block, taken together
 
 static const float nowhere = 1e9f;
 
@@ -31,14 +34,6 @@ static void distances(const dem_ball_columns *balls, const dem_block_bound *boun
     }
 }
 
-static bool any_above(const float *restrict a, float limit)
-{
-    int32_t any = 0;
-    for (int l = 0; l < DEM_BLOCK; l++)
-        any |= a[l] > limit;
-    return any;
-}
-
 // Which balls can be nearest or second nearest to a sample of a block of radius R about b: with t_i the distance of b
 // to ball i, those with t_i <= (second smallest t) + 2 R.
 static float near_limit(const dem_ball_columns *balls, const float smallest[2], const dem_block_bound *bound,
@@ -47,11 +42,11 @@ static float near_limit(const dem_ball_columns *balls, const float smallest[2], 
     return (balls->count > 1 ? smallest[1] : smallest[0]) + 2 * bound->radius + slack;
 }
 
-static uint32_t lanes_within(const float *restrict distance, float limit)
+static uint32_t lanes_within(const float *distance, float limit)
 {
     uint32_t within = 0;
-    for (int l = 0; l < DEM_LANES; l++)
-        within |= (uint32_t)(distance[l] <= limit) << l;
+    for (int l = 0; l < DEM_LANES; l += WIDTH)
+        within |= widef_bits(widef_up_to(widef_load(distance + l), widef_all(limit))) << l;
     return within;
 }
 
@@ -107,58 +102,83 @@ static size_t list_near(const dem_ball_columns *balls, const dem_block_bound *bo
     return count;
 }
 
-static void nearest(const dem_sample_block *restrict block, const dem_ball_columns *balls, const dem_near_list *near,
-                    float *restrict f, int32_t *restrict owner)
+DEM_INLINE bool any_above(const widef *a, float limit)
 {
-    float best[DEM_BLOCK];
-    int32_t who[DEM_BLOCK];
-    for (int l = 0; l < DEM_BLOCK; l++) {
-        best[l] = nowhere;
-        who[l] = -1;
+    uint32_t any = 0;
+    for (int p = 0; p < PARTS; p++)
+        any |= widef_bits(widef_below(widef_all(limit), a[p]));
+    return any;
+}
+
+// distances of some samples of a block to the surface of ball i
+DEM_INLINE widef distance_to(const dem_sample_block *block, const dem_ball_columns *balls, uint32_t i, int part)
+{
+    widef dx = widef_load(block->x + part * WIDTH) - widef_all(balls->x[i]);
+    widef dy = widef_load(block->y + part * WIDTH) - widef_all(balls->y[i]);
+    widef dz = widef_load(block->z + part * WIDTH) - widef_all(balls->z[i]);
+    return widef_sqrt(dx * dx + dy * dy + dz * dz) - widef_all(balls->r[i]);
+}
+
+// a ball's number goes through the lanes as a float: there are fewer of them than 2^24
+static void store_nearest(const widef *best, const widef *who, float *f, int32_t *owner)
+{
+    float number[DEM_BLOCK];
+    for (int p = 0; p < PARTS; p++) {
+        widef_store(f + p * WIDTH, best[p]);
+        widef_store(number + p * WIDTH, who[p]);
+    }
+    for (int l = 0; l < DEM_BLOCK; l++)
+        owner[l] = (int32_t)number[l];
+}
+
+static void nearest(const dem_sample_block *block, const dem_ball_columns *balls, const dem_near_list *near, float *f,
+                    int32_t *owner)
+{
+    widef best[PARTS], who[PARTS];
+    for (int p = 0; p < PARTS; p++) {
+        best[p] = widef_all(nowhere);
+        who[p] = widef_all(-1);
     }
     for (size_t k = 0; k < near->count; k++) {
         float farther = near->least[k] - near->reach, limit = farther > near->enough ? farther : near->enough;
         if (k > 0 && !any_above(best, limit))
             break;
         uint32_t i = near->list[k];
-        int32_t id = (int32_t)i;
-        float x = balls->x[i], y = balls->y[i], z = balls->z[i], r = balls->r[i];
-        for (int l = 0; l < DEM_BLOCK; l++) {
-            float dx = block->x[l] - x, dy = block->y[l] - y, dz = block->z[l] - z;
-            float d = sqrtf(dx * dx + dy * dy + dz * dz) - r;
-            who[l] = d < best[l] ? id : who[l];
-            best[l] = d < best[l] ? d : best[l];
+        widef id = widef_all((float)i);
+        for (int p = 0; p < PARTS; p++) {
+            widef d = distance_to(block, balls, i, p);
+            who[p] = widef_select(widef_below(d, best[p]), id, who[p]);
+            best[p] = widef_min(d, best[p]);
         }
     }
-    for (int l = 0; l < DEM_BLOCK; l++) {
-        f[l] = best[l];
-        owner[l] = who[l];
-    }
+    store_nearest(best, who, f, owner);
 }
 
-static void nearest_two(const dem_sample_block *restrict block, const dem_ball_columns *balls,
-                        const dem_near_list *near, float *restrict f, int32_t *restrict owner, float *restrict second)
+static void nearest_two(const dem_sample_block *block, const dem_ball_columns *balls, const dem_near_list *near,
+                        float *f, int32_t *owner, float *second)
 {
-    for (int l = 0; l < DEM_BLOCK; l++) {
-        f[l] = second[l] = nowhere;
-        owner[l] = -1;
+    widef best[PARTS], other[PARTS], who[PARTS];
+    for (int p = 0; p < PARTS; p++) {
+        best[p] = other[p] = widef_all(nowhere);
+        who[p] = widef_all(-1);
     }
     for (size_t k = 0; k < near->count; k++) {
         float farther = near->least[k] - near->reach, limit = farther > near->enough ? farther : near->enough;
-        if (k > 1 && !any_above(second, limit))
+        if (k > 1 && !any_above(other, limit))
             break;
         uint32_t i = near->list[k];
-        int32_t id = (int32_t)i;
-        float x = balls->x[i], y = balls->y[i], z = balls->z[i], r = balls->r[i];
-        for (int l = 0; l < DEM_BLOCK; l++) {
-            float dx = block->x[l] - x, dy = block->y[l] - y, dz = block->z[l] - z;
-            float d = sqrtf(dx * dx + dy * dy + dz * dz) - r;
-            float other = d < f[l] ? f[l] : d;
-            owner[l] = d < f[l] ? id : owner[l];
-            f[l] = d < f[l] ? d : f[l];
-            second[l] = other < second[l] ? other : second[l];
+        widef id = widef_all((float)i);
+        for (int p = 0; p < PARTS; p++) {
+            widef d = distance_to(block, balls, i, p);
+            widef_mask nearer = widef_below(d, best[p]);
+            other[p] = widef_min(widef_select(nearer, best[p], d), other[p]);
+            who[p] = widef_select(nearer, id, who[p]);
+            best[p] = widef_min(d, best[p]);
         }
     }
+    store_nearest(best, who, f, owner);
+    for (int p = 0; p < PARTS; p++)
+        widef_store(second + p * WIDTH, other[p]);
 }
 
 static size_t owners_of(const int32_t *restrict owner, uint32_t *restrict owners)
@@ -221,16 +241,15 @@ static float energy(const dem_sample_block *block, const float *f, const dem_cha
     return total(lane);
 }
 
-static bool with_ball(const dem_sample_block *restrict block, const float ball[4], const float *restrict f,
-                      float *restrict with)
+static bool with_ball(const dem_sample_block *block, const float ball[4], const float *f, float *with)
 {
-    float x = ball[0], y = ball[1], z = ball[2], r = ball[3];
-    int32_t nearer = 0;
-    for (int l = 0; l < DEM_BLOCK; l++) {
-        float dx = block->x[l] - x, dy = block->y[l] - y, dz = block->z[l] - z;
-        float d = sqrtf(dx * dx + dy * dy + dz * dz) - r;
-        nearer |= d < f[l];
-        with[l] = d < f[l] ? d : f[l];
+    float one[4] = {ball[0], ball[1], ball[2], ball[3]};
+    dem_ball_columns columns = {one, one + 1, one + 2, one + 3, 1, 1};
+    uint32_t nearer = 0;
+    for (int p = 0; p < PARTS; p++) {
+        widef d = distance_to(block, &columns, 0, p), old = widef_load(f + p * WIDTH);
+        nearer |= widef_bits(widef_below(d, old));
+        widef_store(with + p * WIDTH, widef_min(d, old));
     }
     return nearer;
 }
@@ -385,6 +404,18 @@ static inline int32_t steps_above(double x)
     return -steps_below(-x);
 }
 
+enum { ROWS = 16 };  // taken together
+
+// the first and the last point of rows k.. in a disc about (x, y)
+static void row_ends(double x, double y, double disc, double k, double *restrict from, double *restrict to)
+{
+    for (int t = 0; t < ROWS; t++) {
+        double dy = k + t - y, rest = disc - dy * dy, reach = sqrt(rest > 0 ? rest : 0);
+        from[t] = ceil(x - reach);
+        to[t] = rest > 0 ? floor(x + reach) : -1e9;
+    }
+}
+
 static int64_t lattice_gain(const dem_lattice *lattice, dem_ball ball, uint64_t *cover)
 {
     const dem_columns *c = &lattice->rows;
@@ -392,30 +423,31 @@ static int64_t lattice_gain(const dem_lattice *lattice, dem_ball ball, uint64_t 
     double y = (ball.centre.y - c->origin[0]) / c->step, z = (ball.centre.z - c->origin[1]) / c->step;
     int64_t gain = 0;
     int32_t last = steps_below(z + r);
+    double from[ROWS], to[ROWS];
     for (int32_t j = steps_above(z - r); j <= last; j++) {
         double dz = j - z, disc = r * r - dz * dz;
         if (disc <= 0)
             continue;
         double half = sqrt(disc);
-        int32_t k1 = steps_below(y + half), begin = 0, end = 0;
+        int32_t k1 = steps_below(y + half), begin = 0, end = 0, count;
         uint32_t row = 0;
         if (j >= 0 && j < c->row_count) {
             row = c->line[j];
             begin = c->first[j];
             end = begin + (int32_t)(c->line[j + 1] - row);
         }
-        for (int32_t k = steps_above(y - half); k <= k1; k++) {
-            double dy = k - y, rest = disc - dy * dy;
-            if (rest <= 0)
-                continue;
-            double reach = sqrt(rest);
-            int32_t i0 = steps_above(x - reach), i1 = steps_below(x + reach);
-            if (i1 < i0)
-                continue;
-            if (k >= begin && k < end)
-                gain += row_gain(lattice, row + (uint32_t)(k - begin), i0, i1, cover);
-            else
-                gain -= i1 - i0 + 1;
+        for (int32_t k = steps_above(y - half); k <= k1; k += count) {
+            count = k1 - k + 1 < ROWS ? k1 - k + 1 : ROWS;
+            row_ends(x, y, disc, k, from, to);
+            for (int32_t t = 0; t < count; t++) {
+                int32_t i0 = (int32_t)from[t], i1 = (int32_t)to[t];
+                if (i1 < i0)
+                    continue;
+                if (k + t >= begin && k + t < end)
+                    gain += row_gain(lattice, row + (uint32_t)(k + t - begin), i0, i1, cover);
+                else
+                    gain -= i1 - i0 + 1;
+            }
         }
     }
     return gain;

@@ -117,7 +117,7 @@ dem_status dem_pack_place(dem_pack_stages *run, dem_error *error)
     dem_pack_stage(p, placed);
     DEM_TRY(dem_pack_go_on(p, error));
     DEM_TRY(dem_candidates_greedy(&p->candidates, &p->lattice, p->kernels, p->inflations, p->inflation_count,
-                                  START_FACTOR * wanted, dem_threads(p->ctx), state->balls, &state->count, error));
+                                  START_FACTOR * wanted, p->crew, state->balls, &state->count, error));
     dem_laps_end(&p->laps, "choice");
     for (size_t i = 0; i < state->count; i++)
         state->clearances[i].distance = -1;

@@ -86,6 +86,7 @@ typedef struct dem_packing {
     size_t *near_begin;          ///< [blocks] into the chunk's `near`
     uint32_t *near_size;         ///< [blocks]
     dem_ball *near_at;           ///< [capacity] the balls the lists were made for
+    size_t near_balls;           ///< their number; 0: there are no lists
     double near_slack;           ///< lists hold while no ball has moved by more than half of it
     double near_moved;           ///< the farthest that one has moved since
     struct dem_link *links;      ///< [capacity] the open ones, as dem_pack_links left them
@@ -134,7 +135,7 @@ void dem_ball_columns_set(dem_ball_columns *columns, const dem_ball *balls, size
 dem_status dem_pack_assign(dem_packing *p, dem_pack_state *state, dem_error *error);
 /// The same for balls that have moved a little since the last `dem_pack_assign` of balls of the same numbers.
 dem_status dem_pack_assign_moved(dem_packing *p, dem_pack_state *state, dem_error *error);
-/// Assigns and sets p->cost: what the energy rises by when a ball is removed and the others stay.
+/// Sets f and owner of every sample, and p->cost: what the energy rises by when a ball is removed and the others stay.
 dem_status dem_pack_removal_costs(dem_packing *p, dem_pack_state *state, dem_error *error);
 /// The IoU gap as the surface samples see it.
 double dem_pack_gap_estimate(const dem_packing *p, const dem_pack_state *state);

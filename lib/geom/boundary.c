@@ -164,20 +164,18 @@ static double crease_distance2(const dem_crease *c, dem_vec3 p, double limit2, d
 
 static void crease_closest(const dem_boundary *b, dem_vec3 p, double enough, dem_boundary_hit *hit)
 {
-    uint32_t stack[DEM_BOX_TREE_STACK];
+    const dem_box_node *nodes = b->crease_tree.nodes;
+    dem_box_visit stack[DEM_BOX_TREE_STACK];
     int top = 0;
     if (b->crease_tree.count)
-        stack[top++] = 0;
+        stack[top++] = (dem_box_visit){box_distance2(&nodes[0].box, p), 0};
     while (top && hit->distance > enough) {
-        uint32_t at = stack[--top];
-        const dem_box_node *node = &b->crease_tree.nodes[at];
-        if (box_distance2(&node->box, p) >= hit->distance * hit->distance)
+        dem_box_visit visit = stack[--top];
+        const dem_box_node *node = &nodes[visit.node];
+        if (visit.distance2 >= hit->distance * hit->distance)
             continue;
         if (node->right) {
-            const dem_box_node *left = node + 1, *right = &b->crease_tree.nodes[node->right];
-            bool left_first = box_distance2(&left->box, p) < box_distance2(&right->box, p);
-            stack[top++] = left_first ? node->right : at + 1;
-            stack[top++] = left_first ? at + 1 : node->right;
+            top += box_visit_both(nodes, visit.node, p, hit->distance * hit->distance, stack + top);
             continue;
         }
         for (uint32_t k = node->begin; k < node->end; k++) {

@@ -42,4 +42,27 @@ static inline double box_distance2(const dem_box *box, dem_vec3 p)
     return x * x + y * y + z * z;
 }
 
+/// A node that is still to be looked at, and its squared distance.
+typedef struct dem_box_visit {
+    double distance2;
+    uint32_t node;
+} dem_box_visit;
+
+/// Puts those of a node's two parts on the stack that are nearer than asked for, the nearer one on top. Returns their
+/// number.
+static inline int box_visit_both(const dem_box_node *nodes, uint32_t node, dem_vec3 p, double limit2,
+                                 dem_box_visit *stack)
+{
+    dem_box_visit left = {box_distance2(&nodes[node + 1].box, p), node + 1};
+    dem_box_visit right = {box_distance2(&nodes[nodes[node].right].box, p), nodes[node].right};
+    bool left_first = left.distance2 < right.distance2;
+    dem_box_visit near = left_first ? left : right, far = left_first ? right : left;
+    int count = 0;
+    if (far.distance2 < limit2)
+        stack[count++] = far;
+    if (near.distance2 < limit2)
+        stack[count++] = near;
+    return count;
+}
+
 #endif

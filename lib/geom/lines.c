@@ -7,7 +7,7 @@
 
 #define GOLDEN 0.61803398874989485
 // a lattice has at most so many rows or columns; the spacing is enlarged where it must be
-enum { MAX_ROWS = 1 << 14, NONE = -1 };
+enum { MAX_ROWS = 1 << 14, NONE = -1, COVERS = 32 };
 
 // an event on the lines of one row; lists by column
 typedef struct crossing {
@@ -21,8 +21,14 @@ typedef struct chord {
     int32_t next;
 } chord;
 
+// what the plane of a row cuts out of a ball
+typedef struct disc {
+    double x, z, wide2, wide;
+} disc;
+
 // work space of one thread
 typedef struct row_work {
+    disc *discs;              // [balls]
     crossing *crossings;
     size_t crossing_count, crossing_room;
     chord *chords;
@@ -174,19 +180,44 @@ static bool triangle_cross(const lattice *l, size_t triangle, int64_t j, row_wor
     return true;
 }
 
-static bool ball_cross(const lattice *l, dem_ball ball, int64_t j, row_work *w)
+// A disc adds nothing where a larger one contains it, by more than rounding. It is looked for among the first ones,
+// which are those of the largest balls.
+static bool is_contained(const disc *discs, size_t count, const disc *d)
 {
-    double dy = row_y(l, j) - ball.centre.y, x0 = row_x(l, j), wide2 = ball.radius * ball.radius - dy * dy;
-    if (!(wide2 > 0))
-        return true;
-    double wide = sqrt(wide2);
+    for (size_t k = 0; k < count && k < COVERS; k++) {
+        double more = discs[k].wide * (1 - 1e-9) - d->wide, dx = discs[k].x - d->x, dz = discs[k].z - d->z;
+        if (more > 0 && dx * dx + dz * dz < more * more)
+            return true;
+    }
+    return false;
+}
+
+// the discs in which the plane of a row cuts the balls, without those hidden in others
+static size_t cut_balls(const lattice *l, int64_t j, disc *discs)
+{
+    size_t count = 0;
+    for (size_t k = 0; k < l->bodies->ball_count; k++) {
+        const dem_ball *ball = &l->balls[k];
+        double dy = row_y(l, j) - ball->centre.y, wide2 = ball->radius * ball->radius - dy * dy;
+        if (!(wide2 > 0))
+            continue;
+        disc d = {ball->centre.x, ball->centre.z, wide2, sqrt(wide2)};
+        if (!is_contained(discs, count, &d))
+            discs[count++] = d;
+    }
+    return count;
+}
+
+static bool disc_cross(const lattice *l, const disc *d, int64_t j, row_work *w)
+{
+    double x0 = row_x(l, j);
     int64_t first, last;
-    index_range(ball.centre.x - wide, ball.centre.x + wide, x0, l->spacing, l->columns, &first, &last);
+    index_range(d->x - d->wide, d->x + d->wide, x0, l->spacing, l->columns, &first, &last);
     for (int64_t i = first; i <= last; i++) {
-        double dx = x0 + l->spacing * (double)i - ball.centre.x, half2 = wide2 - dx * dx;
+        double dx = x0 + l->spacing * (double)i - d->x, half2 = d->wide2 - dx * dx;
         if (!(half2 > 0))
             continue;
-        double half = sqrt(half2), from = ball.centre.z - half, to = ball.centre.z + half;
+        double half = sqrt(half2), from = d->z - half, to = d->z + half;
         chord *cover = &w->cover[i];
         if (cover->from > cover->to || (from <= cover->to && to >= cover->from)) {
             cover->from = fmin(cover->from, from);
@@ -284,8 +315,9 @@ static bool row_measure(const lattice *l, int64_t j, row_work *w, dem_bundle_vol
     for (size_t k = l->start[j]; k < l->start[j + 1]; k++)
         if (!triangle_cross(l, l->members[k], j, w))
             return false;
-    for (size_t k = 0; k < l->bodies->ball_count; k++)
-        if (!ball_cross(l, l->balls[k], j, w))
+    size_t discs = cut_balls(l, j, w->discs);
+    for (size_t k = 0; k < discs; k++)
+        if (!disc_cross(l, &w->discs[k], j, w))
             return false;
     for (int64_t i = 0; i < l->columns; i++) {
         dem_bundle_volumes *v = &groups[(i + 3 * j) % DEM_LINE_GROUPS];
@@ -306,6 +338,7 @@ static bool row_measure(const lattice *l, int64_t j, row_work *w, dem_bundle_vol
 
 static void row_work_release(row_work *w)
 {
+    free(w->discs);
     free(w->crossings);
     free(w->chords);
     free(w->first_crossing);
@@ -322,7 +355,8 @@ static bool rows_measure(const lattice *l, int threads, dem_bundle_volumes (*row
         row_work w = {0};
         w.first_crossing = dem_alloc((size_t)l->columns, sizeof *w.first_crossing);
         w.cover = dem_alloc((size_t)l->columns, sizeof *w.cover);
-        bool ready = w.first_crossing && w.cover;
+        w.discs = dem_alloc(l->bodies->ball_count, sizeof *w.discs);
+        bool ready = w.first_crossing && w.cover && w.discs;
 #pragma omp for schedule(dynamic, 4) reduction(|| : failed)
         for (int64_t j = 0; j < l->rows; j++)
             failed = failed || !ready || !row_measure(l, j, &w, rows[j]);

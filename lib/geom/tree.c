@@ -80,19 +80,16 @@ typedef struct nearest {
 // looks for a point nearer than given, and stops at one not farther than `enough2`
 static void search_nearest(const dem_tree *tree, dem_vec3 p, double enough2, nearest *best)
 {
-    uint32_t stack[DEM_BOX_TREE_STACK];
+    dem_box_visit stack[DEM_BOX_TREE_STACK];
     int top = 0;
-    stack[top++] = 0;
+    stack[top++] = (dem_box_visit){box_distance2(&tree->nodes[0].box, p), 0};
     while (top && best->distance2 > enough2) {
-        uint32_t at = stack[--top];
-        const dem_tree_node *node = &tree->nodes[at];
-        if (box_distance2(&node->box, p) >= best->distance2)
+        dem_box_visit visit = stack[--top];
+        if (visit.distance2 >= best->distance2)
             continue;
+        const dem_tree_node *node = &tree->nodes[visit.node];
         if (node->right) {
-            uint32_t left = at + 1, right = node->right;
-            bool left_first = box_distance2(&tree->nodes[left].box, p) < box_distance2(&tree->nodes[right].box, p);
-            stack[top++] = left_first ? right : left;
-            stack[top++] = left_first ? left : right;
+            top += box_visit_both(tree->nodes, visit.node, p, best->distance2, stack + top);
             continue;
         }
         for (uint32_t i = node->begin; i < node->end; i++) {

@@ -53,38 +53,44 @@ static bool x_then_y(flat_point a, flat_point b)
     return a.x < b.x || (a.x == b.x && a.y < b.y);
 }
 
-// projects along axis 2 of `f`, leaving out most points that lie inside the polygon of the extreme ones
+// Projects along axis 2 of `f`, leaving out most points that lie inside the polygon of the extreme ones: those of
+// x, x + y, y, y - x and their opposites.
 static size_t project(const point_set *set, const frame *f)
 {
-    double best[FILTER];
-    size_t at[FILTER] = {0};
-    for (int k = 0; k < FILTER; k++)
-        best[k] = -INFINITY;
-    double c[FILTER], s[FILTER];
-    for (int k = 0; k < FILTER; k++) {
-        c[k] = cos(2 * DEM_PI * k / FILTER);
-        s[k] = sin(2 * DEM_PI * k / FILTER);
+    flat_point edge[FILTER], corner[FILTER];
+    double low[FILTER / 2], high[FILTER / 2];
+    size_t lowest[FILTER / 2] = {0}, highest[FILTER / 2] = {0};
+    for (int k = 0; k < FILTER / 2; k++) {
+        low[k] = INFINITY;
+        high[k] = -INFINITY;
     }
     for (size_t i = 0; i < set->count; i++) {
         flat_point p = {v3_dot(set->points[i], f->axis[0]), v3_dot(set->points[i], f->axis[1])};
+        const double along_each[FILTER / 2] = {p.x, p.x + p.y, p.y, p.y - p.x};
         set->flat[i] = p;
-        for (int k = 0; k < FILTER; k++) {
-            double d = p.x * c[k] + p.y * s[k];
-            if (d > best[k]) {
-                best[k] = d;
-                at[k] = i;
-            }
+        for (int k = 0; k < FILTER / 2; k++) {
+            if (along_each[k] < low[k])
+                low[k] = along_each[k], lowest[k] = i;
+            if (along_each[k] > high[k])
+                high[k] = along_each[k], highest[k] = i;
         }
     }
-    flat_point corner[FILTER];
-    for (int k = 0; k < FILTER; k++)
-        corner[k] = set->flat[at[k]];
+    int corners = 0;
+    for (int k = 0; k < FILTER; k++) {
+        size_t at = k < FILTER / 2 ? highest[k] : lowest[k - FILTER / 2];
+        size_t next = k + 1 < FILTER / 2 ? highest[k + 1] : lowest[(k + 1) % (FILTER / 2)];
+        next = k + 1 == FILTER ? highest[0] : next;
+        if (at == next)
+            continue;
+        corner[corners] = set->flat[at];
+        edge[corners++] = (flat_point){set->flat[next].x - set->flat[at].x, set->flat[next].y - set->flat[at].y};
+    }
     size_t kept = 0;
     for (size_t i = 0; i < set->count; i++) {
         flat_point p = set->flat[i];
         bool inside = true;
-        for (int k = 0; k < FILTER && inside; k++)
-            inside = at[k] == at[(k + 1) % FILTER] || cross2(corner[k], corner[(k + 1) % FILTER], p) > 0;
+        for (int k = 0; k < corners && inside; k++)
+            inside = edge[k].x * (p.y - corner[k].y) - edge[k].y * (p.x - corner[k].x) > 0;
         if (!inside)
             set->flat[kept++] = p;
     }
@@ -172,22 +178,28 @@ static double extent(const point_set *set, dem_vec3 axis)
     return high - low;
 }
 
-// turns the frame about its axis 2 into the best position; false where the projection has no area
-static bool turn(const point_set *set, frame *f)
+// Turns the frame, whose edge 2 is known, about its axis 2 into the best position; false where the projection has no
+// area. `rim` are points of which all can be missing that do not lie on the rim of the projection.
+static bool turn_rim(const point_set *rim, frame *f)
 {
-    size_t kept = project(set, f), n = planar_hull(set->flat, kept, set->hull);
+    size_t kept = project(rim, f), n = planar_hull(rim->flat, kept, rim->hull);
     flat_point u = {1, 0};
     double edge[2] = {0, 0};
-    if (n < 3 || !(smallest_rectangle(set->hull, n, &u, edge) > 0))
+    if (n < 3 || !(smallest_rectangle(rim->hull, n, &u, edge) > 0))
         return false;
     dem_vec3 a = f->axis[0], b = f->axis[1];
     f->axis[0] = v3_unit(v3_along(v3_scale(a, u.x), u.y, b));
     f->axis[1] = v3_cross(f->axis[2], f->axis[0]);
     f->edge[0] = edge[0];
     f->edge[1] = edge[1];
-    f->edge[2] = extent(set, f->axis[2]);
     f->volume = f->edge[0] * f->edge[1] * f->edge[2];
     return true;
+}
+
+static bool turn(const point_set *set, frame *f)
+{
+    f->edge[2] = extent(set, f->axis[2]);
+    return turn_rim(set, f);
 }
 
 static frame rolled(frame f)
@@ -226,20 +238,50 @@ static frame tilted(const point_set *set, const frame *f, const int p[3], double
     return g;
 }
 
+// The points that can lie on the rim of the projection along axis 2 when the frame is turned by an angle at most: in
+// the projection a point moves by less than its distance times the angle, and so do the corners of the hull.
+static void near_rim(const point_set *set, const frame *f, double angle, point_set *rim)
+{
+    size_t n = planar_hull(set->flat, project(set, f), set->hull);
+    double farthest2 = 0;
+    rim->count = 0;
+    for (size_t i = 0; i < set->count; i++)
+        farthest2 = larger(farthest2, v3_norm2(set->points[i]));
+    double margin = 2.01 * angle * sqrt(farthest2);
+    for (size_t i = 0; i < set->count; i++) {
+        flat_point p = {v3_dot(set->points[i], f->axis[0]), v3_dot(set->points[i], f->axis[1])};
+        bool inside = n > 2;
+        for (size_t k = 0; k < n && inside; k++) {
+            flat_point a = set->hull[k], b = set->hull[k + 1 < n ? k + 1 : 0];
+            double depth = cross2(a, b, p), edge2 = (b.x - a.x) * (b.x - a.x) + (b.y - a.y) * (b.y - a.y);
+            inside = depth > 0 && depth * depth > margin * margin * edge2;
+        }
+        if (!inside)
+            rim->points[rim->count++] = set->points[i];
+    }
+}
+
 // settles, tries tilts of ever smaller angles, and settles again
 static void tilt(const point_set *set, frame *f, double angle)
 {
     int idle = 0;
     settle(set, f);
+    dem_vec3 points[3][EXTREME_POINTS];
     for (; angle > 1e-4 && idle < 2; angle /= 3) {
-        frame best = *f;
+        frame best = *f, rolling = *f;
+        point_set rim[3];
+        for (int k = 0; k < 3; k++) {
+            rim[k] = (point_set){points[k], 0, set->flat, set->hull};
+            near_rim(set, &rolling, angle, &rim[k]);
+            rolling = rolled(rolling);
+        }
         for (int i = 0; i < TILTS; i++) {
             if (i == NO_TILT)
                 continue;
             frame g = tilted(set, f, (int[]){i % 3 - 1, i / 3 % 3 - 1, i / 9 - 1}, angle);
             for (int k = 0; k < 3; k++) {
                 frame h = g;
-                if (turn(set, &h) && h.volume < best.volume * (1 - 1e-12))
+                if (turn_rim(&rim[k], &h) && h.volume < best.volume * (1 - 1e-12))
                     best = h;
                 g = rolled(g);
             }
