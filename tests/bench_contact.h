@@ -49,18 +49,20 @@ static inline void bench_step(bench *b, double step)
     dem_world *w = b->w;
     dem_rows rows = world_rows(w);
     memset(w->bodies.momentum, 0, w->bodies.padded * DEM_ROW * sizeof(double));
-    for (size_t i = 0; i < w->segment_count; i++) {
-        dem_segment *s = &w->contacts.segments[i];
-        dem_contact_job job = {w->contacts.columns, s->begin, s->end, step, 1, step, &w->tallies[i], NULL};
-        w->instance->pairs(w->features, &rows, &job);
-        for (int form = 0; form < DEM_WALL_FORMS; form++)
-            if (w->wall_contacts[form].segments) {
-                s = &w->wall_contacts[form].segments[i];
-                job = (dem_contact_job){
-                    w->wall_contacts[form].columns, s->begin, s->end, step, 1, step, &w->tallies[i], NULL};
-                w->instance->walls[form](w->features, &rows, &job);
-            }
-    }
+    for (size_t i = 0; i < w->segment_count; i++)
+        for (int form = -1; form < DEM_WALL_FORMS; form++) {
+            const dem_contacts *contacts = form < 0 ? &w->contacts : &w->wall_contacts[form];
+            if (!contacts->segments)
+                continue;
+            dem_contact_job job = {.columns = contacts->columns,
+                                   .begin = contacts->segments[i].begin,
+                                   .end = contacts->segments[i].end,
+                                   .last_step = step,
+                                   .kick = 1,
+                                   .next_step = step,
+                                   .tally = &w->tallies[i]};
+            (form < 0 ? w->instance->pairs : w->instance->walls[form])(w->features, &rows, &job);
+        }
 }
 
 static inline wrench bench_wrench(const bench *b, size_t body)

@@ -76,6 +76,7 @@ typedef struct dem_contact_columns {
 typedef struct dem_contact_job {
     dem_contact_columns columns;
     size_t begin, end;       ///< multiples of 8
+    size_t next, next_end;   ///< those that follow, whose bodies are fetched ahead; equal: all bodies are in a cache
     double last_step, kick;  ///< time since the last step; time the forces act [s]
     double next_step;        ///< the one to come [s]
     dem_tally *tally;

@@ -98,8 +98,13 @@ static bool evaluate(dem_world *w, const dem_contacts *contacts, size_t segment,
     while (w->views.record_capacity < s->end - s->begin)
         if (!dem_grow(&w->views.records, &w->views.record_capacity, w->views.record_capacity, sizeof *w->views.records))
             return false;
-    dem_contact_job job = {contacts->columns, s->begin, s->end,          w->last_step, 0,
-                           w->next_step,      &scratch, w->views.records};
+    dem_contact_job job = {.columns = contacts->columns,
+                           .begin = s->begin,
+                           .end = s->end,
+                           .last_step = w->last_step,
+                           .next_step = w->next_step,
+                           .tally = &scratch,
+                           .records = w->views.records};
     if (w->features.soft)
         dem_soft_records(w, segment, form, w->views.records);
     else

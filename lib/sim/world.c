@@ -28,6 +28,7 @@ static const char *const pass_names[DEM_PASSES] = {
 };
 
 enum { THREADS_FROM = 512, DOMAINS = 8, DOMAIN_LEAST = 256, DOMAIN_MOST = 4096 };
+enum { BODIES_IN_CACHE = 2048 };  // with their momenta half a megabyte
 
 // ---- making a world
 
@@ -388,12 +389,21 @@ static void split_parts(dem_world *w)
 static void contact_pass(dem_world *w, size_t begin, size_t end, double kick)
 {
     dem_rows rows = world_rows(w);
+    bool many = w->bodies.count > BODIES_IN_CACHE;
     for (size_t i = begin; i < end; i++) {
         const dem_segment *s = &w->contacts.segments[i];
+        const dem_segment *next = &w->contacts.segments[i + 1 < end ? i + 1 : begin];
+        dem_contact_job job = {.columns = w->contacts.columns,
+                               .begin = s->begin,
+                               .end = s->end,
+                               .next = many ? next->begin : 0,
+                               .next_end = many ? next->end : 0,
+                               .last_step = w->last_step,
+                               .kick = kick,
+                               .next_step = w->next_step,
+                               .tally = &w->tallies[i]};
         if (s->begin < s->end)
-            w->instance->pairs(w->features, &rows,
-                               &(dem_contact_job){w->contacts.columns, s->begin, s->end, w->last_step, kick,
-                                                  w->next_step, &w->tallies[i], NULL});
+            w->instance->pairs(w->features, &rows, &job);
     }
 }
 
@@ -401,11 +411,15 @@ static void contact_pass(dem_world *w, size_t begin, size_t end, double kick)
 static void wall_blocks(dem_world *w, size_t form, size_t segment, size_t begin, size_t end, double kick)
 {
     dem_rows rows = world_rows(w);
+    dem_contact_job job = {.columns = w->wall_contacts[form].columns,
+                           .begin = begin,
+                           .end = end,
+                           .last_step = w->last_step,
+                           .kick = kick,
+                           .next_step = w->next_step,
+                           .tally = &w->tallies[(1 + form) * w->segment_count + segment]};
     if (begin < end)
-        w->wall_instance->walls[form](w->features, &rows,
-                                      &(dem_contact_job){w->wall_contacts[form].columns, begin, end, w->last_step, kick,
-                                                         w->next_step,
-                                                         &w->tallies[(1 + form) * w->segment_count + segment], NULL});
+        w->wall_instance->walls[form](w->features, &rows, &job);
 }
 
 // with meshes many blocks have no contact now
