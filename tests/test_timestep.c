@@ -27,7 +27,11 @@ static void known_matrices_have_their_eigenvalues(void **state)
             a[i][j] = v[i] * v[j];
     check_close(dem_largest_eigenvalue6(a), norm2, 1e-14);
     memset(a, 0, sizeof a);
+    check_near(dem_eigenvalue_bound6(a), 0, 0);
     check_near(dem_largest_eigenvalue6(a), 0, 0);
+    for (int i = 0; i < 6; i++)
+        a[i][i] = 3e200;
+    check_close(dem_eigenvalue_bound6(a), 3e200 * pow(6, 1.0 / 8), 2e-6);
 }
 
 static void random_matrices_agree_with_power_iteration(void **state)
@@ -60,7 +64,9 @@ static void random_matrices_agree_with_power_iteration(void **state)
             for (int i = 0; i < 6; i++)
                 x[i] = y[i] / lambda;
         }
-        double got = dem_largest_eigenvalue6(a);
+        double bound = dem_eigenvalue_bound6(a), got = dem_largest_eigenvalue6(a);
+        // the eighth root of the sum of six eighth powers
+        check(bound >= got && bound <= 1.0001 * pow(6, 1.0 / 8) * got);
         // two eigenvalues that nearly agree slow the iteration down
         check_close(got, lambda, 1e-6);
         check(got >= lambda * (1 - 1e-13));

@@ -483,7 +483,7 @@ static dem_status sort_near(search *s, uint32_t *first, const near_pair **sorted
         first[0] = 0;
         near = s->sorted;
     }
-    for (size_t i = 0; i < n; i++)
+    for (size_t i = 0; near && i < n; i++)
         sort_partners(near + first[i], first[i + 1] - first[i]);
     *sorted = near;
     return DEM_OK;

@@ -51,6 +51,36 @@ double dem_largest_eigenvalue6(double a[6][6])
     return largest;
 }
 
+// B = A A, symmetric; returns the root of the sum of its squares
+static double square6(const double a[6][6], double b[6][6])
+{
+    double sum = 0;
+    for (int i = 0; i < 6; i++)
+        for (int j = 0; j <= i; j++) {
+            double s = 0;
+            for (int k = 0; k < 6; k++)
+                s += a[i][k] * a[j][k];
+            b[i][j] = b[j][i] = s;
+            sum += (i == j ? 1 : 2) * s * s;
+        }
+    return sqrt(sum);
+}
+
+double dem_eigenvalue_bound6(const double a[6][6])
+{
+    double once[6][6], twice[6][6], norm = 0;
+    for (int i = 0; i < 6; i++)
+        for (int j = 0; j < 6; j++)
+            norm = fmax(norm, fabs(a[i][j]));
+    if (!(norm > 0 && norm < INFINITY))
+        return norm;
+    for (int i = 0; i < 6; i++)
+        for (int j = 0; j < 6; j++)
+            once[i][j] = a[i][j] / norm;
+    square6(once, twice);
+    return 1.000001 * norm * sqrt(sqrt(square6(twice, once)));
+}
+
 // ---- the bound
 
 // Local damping makes forces against the motion larger by this.
@@ -270,22 +300,32 @@ static void add_bonds(const dem_world *w, size_t row, body_problem *p)
     }
 }
 
+static void pose_problem(const dem_world *w, size_t row, bool listed, body_problem *p)
+{
+    memset(p, 0, sizeof *p);
+    if (w->features.soft)
+        dem_soft_problem(w, row, listed, p->stiffness, p->damping);
+    else {
+        add_pairs(w, row, listed, p);
+        add_walls(w, row, listed, p);
+    }
+    if (w->bonds)
+        add_bonds(w, row, p);
+}
+
 // the largest stable step of one body
+static dem_step_bound solve_problem(const dem_world *w, size_t row, body_problem *p)
+{
+    bool damped = w->laws.damped || w->features.rolling || w->bonds;
+    double k = dem_largest_eigenvalue6(p->stiffness), c = damped ? dem_largest_eigenvalue6(p->damping) : 0;
+    return (dem_step_bound){k, c, limit_of(w, k, c), row};
+}
+
 static dem_step_bound body_bound(const dem_world *w, size_t row, bool listed)
 {
     body_problem p;
-    memset(&p, 0, sizeof p);
-    if (w->features.soft)
-        dem_soft_problem(w, row, listed, p.stiffness, p.damping);
-    else {
-        add_pairs(w, row, listed, &p);
-        add_walls(w, row, listed, &p);
-    }
-    if (w->bonds)
-        add_bonds(w, row, &p);
-    double k = dem_largest_eigenvalue6(p.stiffness),
-           c = w->laws.damped || w->features.rolling || w->bonds ? dem_largest_eigenvalue6(p.damping) : 0;
-    return (dem_step_bound){k, c, limit_of(w, k, c), row};
+    pose_problem(w, row, listed, &p);
+    return solve_problem(w, row, &p);
 }
 
 dem_status dem_step_stable(dem_world *w, bool listed, dem_step_bound *bound, dem_error *error)
@@ -295,7 +335,13 @@ dem_status dem_step_stable(dem_world *w, bool listed, dem_step_bound *bound, dem
     for (size_t row = 0; row < w->bodies.count; row++) {
         if (body_absent(&w->bodies, row))
             continue;
-        dem_step_bound own = body_bound(w, row, listed);
+        body_problem p;
+        pose_problem(w, row, listed, &p);
+        // few come near to the worst
+        double k = dem_eigenvalue_bound6(p.stiffness), c = dem_eigenvalue_bound6(p.damping);
+        if (limit_of(w, k, c) > bound->step)
+            continue;
+        dem_step_bound own = solve_problem(w, row, &p);
         if (own.step < bound->step)
             *bound = own;
     }

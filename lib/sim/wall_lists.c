@@ -219,7 +219,8 @@ static bool nothing_new(wall_look *look, size_t segment, dem_wall_form form, con
         size_t end = k;
         while (end < size && contacts->columns.a[segment_place(s, end)] == row)
             end++;
-        same = !look->failed && look->count - begin == end - k && same_items(contacts, s, k, look->items + begin, end - k);
+        same = !look->failed && look->count - begin == end - k;
+        same = same && (end == k || same_items(contacts, s, k, look->items + begin, end - k));
         look->count = begin;
         k = end;
     }
