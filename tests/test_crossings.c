@@ -63,7 +63,7 @@ static void neighbours_cross_only_beyond_what_they_share(void **state)
 static void the_tree_finds_what_all_pairs_find(void **state)
 {
     (void)state;
-    enum { COUNT = 300 };
+    enum { COUNT = 600 };
     dem_random r = random_stream(5, 0);
     for (int round = 0; round < 6; round++) {
         dem_vec3 vertices[3 * COUNT];
@@ -95,6 +95,12 @@ static void the_tree_finds_what_all_pairs_find(void **state)
                 want += v3_norm2(n[0]) > 0 && v3_norm2(n[1]) > 0 && dem_triangles_cross(&mesh, i, k);
             }
         check(found.complete && found.count == want && want > 100);
+        for (int threads = 1; threads <= 3; threads++) {
+            dem_crossings again;
+            check_ok(dem_mesh_crossings(&(dem_ctx){.threads = threads}, &mesh, &tree, SIZE_MAX, &again, &error), error);
+            check(again.count == want && memcmp(again.pairs, found.pairs, want * sizeof *found.pairs) == 0);
+            free(again.pairs);
+        }
         free(found.pairs);
         // and stops where it is told to
         check_ok(dem_mesh_crossings(NULL, &mesh, &tree, 10, &found, &error), error);

@@ -56,15 +56,15 @@ static void greedy_takes_the_ball_of_the_largest_gain_each_time(void **state)
     const dem_pack_kernels *kernels = dem_pack_kernels_choose(NULL);
     check_ok(dem_candidates_build(&grain, &samples, kernels, 200, 1, &candidates, &error), error);
     const double inflations[2] = {0, 0.02};
-    dem_ball chosen[10], again[10];
+    dem_ball chosen[40], again[40];
     size_t count;
     for (int threads = 1; threads <= 3; threads++) {
         dem_crew *crew = dem_crew_create(threads);
         dem_ball *to = threads > 1 ? again : chosen;
-        check_ok(dem_candidates_greedy(&candidates, &lattice, kernels, inflations, 2, 10, crew, to, &count, &error),
+        check_ok(dem_candidates_greedy(&candidates, &lattice, kernels, inflations, 2, 40, crew, to, &count, &error),
                  error);
         dem_crew_destroy(crew);
-        check(count == 10);
+        check(count == 40);
         check(memcmp(to, chosen, sizeof chosen) == 0);
     }
     dem_lattice_clear(&lattice);

@@ -3,7 +3,6 @@
 #include <stdlib.h>
 
 #include "base/clock.h"
-#include "base/crew.h"
 #include "base/memory.h"
 #include "base/text.h"
 #include "clump/fidelity.h"
@@ -118,7 +117,6 @@ typedef struct measuring {
     dem_union balls;
     dem_fidelity_work fidelity;
     dem_shape_work shape;
-    int threads;      // of the distances, which take longest
     dem_status status[MEASURES];
     dem_error error[MEASURES];
 } measuring;
@@ -126,7 +124,7 @@ typedef struct measuring {
 static dem_status measure_one(measuring *m, int part, dem_error *error)
 {
     switch (part) {
-    case DISTANCES: return dem_fidelity_part(&m->fidelity, DEM_FIDELITY_SURFACES, m->threads, error);
+    case DISTANCES: return dem_fidelity_part(&m->fidelity, DEM_FIDELITY_SURFACES, 1, error);
     case GAP: return dem_fidelity_part(&m->fidelity, DEM_FIDELITY_GAP, 1, error);
     case CORNERS: return dem_shape_part(&m->shape, DEM_SHAPE_CORNERS, 1, error);
     case BOX: return dem_shape_part(&m->shape, DEM_SHAPE_BOX, 1, error);
@@ -138,28 +136,20 @@ static dem_status measure_one(measuring *m, int part, dem_error *error)
     }
 }
 
-static void measure_part(void *user, int part)
-{
-    measuring *m = user;
-    m->status[part] = measure_one(m, part, &m->error[part]);
-}
-
 // the clump's errors and shape, the union of its balls, and the surface in the frame of the mesh
 static dem_status measure(const dem_ctx *ctx, const dem_mesh *mesh, const dem_make_options *options, make_work *work,
                           dem_clump_def *def, dem_union *balls, dem_error *error)
 {
-    enum { TOGETHER = 4 };
-    int threads = dem_threads(ctx), hands = threads < TOGETHER ? threads : TOGETHER;
-    measuring m = {.mesh = mesh, .surface_triangles = options->surface_triangles, .work = work,
-                   .threads = threads - hands + 1};
+    int threads = dem_threads(ctx);
+    measuring m = {.mesh = mesh, .surface_triangles = options->surface_triangles, .work = work};
     dem_status status =
         dem_fidelity_begin(mesh, work->pack.balls, work->pack.count, 0, &def->fidelity, &m.fidelity, error);
     if (status == DEM_OK)
         status = dem_shape_begin(mesh, &def->shape, &m.shape, error);
     if (status == DEM_OK) {
-        dem_crew *crew = dem_crew_create(hands);
-        dem_crew_run(crew, MEASURES, measure_part, &m);
-        dem_crew_destroy(crew);
+#pragma omp parallel for num_threads(threads) schedule(dynamic, 1) if (threads > 1)
+        for (int part = 0; part < MEASURES; part++)
+            m.status[part] = measure_one(&m, part, &m.error[part]);
         for (int part = 0; part < MEASURES && status == DEM_OK; part++)
             if ((status = m.status[part]) != DEM_OK && error)
                 *error = m.error[part];

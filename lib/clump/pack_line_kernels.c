@@ -202,8 +202,12 @@ static void add_sums(const strip_place *place, const strip_front *ends, const st
     const dem_line_field *field = place->task->field;
     const float *axes[3] = {place->balls->x, place->balls->y, place->balls->z};
     const float *u = axes[(field->axis + 1) % 3], *v = axes[(field->axis + 2) % 3], *w = axes[field->axis];
-    float outside = place->task->protruding, inside = -place->task->uncovered, sum[4];
-    float(*sums)[4] = place->task->sums, *into = NULL;
+    const widef outside = widef_all(place->task->protruding), inside = widef_all(-place->task->uncovered);
+    float(*sums)[4] = place->task->sums, *into = NULL, sum[4], weight[DEM_LINE_LANES];
+    for (int p = 0; p < PARTS; p++) {
+        widef_mask in = widef_below(widef_all(0), widef_load(against->inside + p * WIDTH));
+        widef_store(weight + p * WIDTH, widef_select(in, inside, outside));
+    }
     for (uint32_t there = lines_below(ends->at, nowhere); there; there &= there - 1) {
         int l = __builtin_ctz(there);
         uint32_t i = place->list[(uint32_t)ends->ball[l]];
@@ -214,7 +218,7 @@ static void add_sums(const strip_place *place, const strip_front *ends, const st
             memcpy(sum, into, sizeof sum);
         }
         float across = place->x + (float)l * field->step - u[i], along = ends->at[l] - w[i];
-        float s = (against->inside[l] > 0 ? inside : outside) * fabsf(along);
+        float s = weight[l] * fabsf(along);
         const float by[4] = {across, place->y - v[i], along, 1};
         for (int k = 0; k < 4; k++)
             sum[k] += s * by[k];

@@ -8,6 +8,7 @@
 #include "math/orient.h"
 
 enum { WORK_PER_TRIANGLE = 1000, WORK_BASE = 1000000, WORK_BETWEEN_REPORTS = 10000000 };
+enum { SHARES = 16, SHARE_NODES = 16 };  // of the tree, looked at together: few, so that it can stop soon
 
 typedef struct corners {
     dem_vec3 p[3];
@@ -159,11 +160,13 @@ bool dem_triangles_cross(const dem_mesh *mesh, uint32_t a, uint32_t b)
     return corners_cross(&p, &q);
 }
 
+// a share of the leaves, and what was found of it
 typedef struct search {
     const dem_mesh *mesh;
     const dem_tree *tree;
-    dem_crossings *found;
+    dem_crossings found;
     size_t room, work;
+    bool failed;     // out of memory
 } search;
 
 // triangles of two leaves, or within one; false: out of memory
@@ -180,10 +183,10 @@ static bool test_leaves(search *s, const dem_box_node *one, const dem_box_node *
             s->work++;
             if (!boxes_meet(&box, &facing) || widest_axis(&a) < 0 || widest_axis(&b) < 0 || !corners_cross(&a, &b))
                 continue;
-            if (!dem_grow(&s->found->pairs, &s->room, s->found->count, sizeof *s->found->pairs))
+            if (!dem_grow(&s->found.pairs, &s->room, s->found.count, sizeof *s->found.pairs))
                 return false;
-            s->found->pairs[s->found->count][0] = s->tree->order[i];
-            s->found->pairs[s->found->count++][1] = s->tree->order[k];
+            s->found.pairs[s->found.count][0] = s->tree->order[i];
+            s->found.pairs[s->found.count++][1] = s->tree->order[k];
         }
     }
     return true;
@@ -211,25 +214,58 @@ static bool test_leaf(search *s, const dem_box_node *leaf)
     return true;
 }
 
+// the leaves among some nodes, until there is too much of them
+static void search_share(search *s, size_t begin, size_t end, size_t max_pairs, size_t max_work)
+{
+    s->found.count = s->work = 0;
+    for (size_t i = begin; i < end && !s->failed && s->found.count <= max_pairs && s->work <= max_work; i++)
+        if (!s->tree->nodes[i].right)
+            s->failed = !test_leaf(s, &s->tree->nodes[i]);
+}
+
+// adds what a share has found; false: out of memory
+static bool take_in(const search *s, dem_crossings *all, size_t *room)
+{
+    for (size_t k = 0; k < s->found.count; k++) {
+        if (!dem_grow(&all->pairs, room, all->count, sizeof *all->pairs))
+            return false;
+        memcpy(all->pairs[all->count++], s->found.pairs[k], sizeof *all->pairs);
+    }
+    return !s->failed;
+}
+
 dem_status dem_mesh_crossings(const dem_ctx *ctx, const dem_mesh *mesh, const dem_tree *tree, size_t max_pairs,
                               dem_crossings *crossings, dem_error *error)
 {
-    *crossings = (dem_crossings){.complete = true};
-    search s = {.mesh = mesh, .tree = tree, .found = crossings};
-    size_t max_work = WORK_BASE + WORK_PER_TRIANGLE * mesh->triangle_count, told = 0;
+    search shares[SHARES];
+    size_t max_work = WORK_BASE + WORK_PER_TRIANGLE * mesh->triangle_count, told = 0, work = 0, room = 0;
+    int threads = dem_threads(ctx);
     dem_status status = DEM_OK;
-    for (size_t i = 0; i < tree->node_count && status == DEM_OK && crossings->complete; i++) {
-        if (tree->nodes[i].right)
-            continue;
-        if (!test_leaf(&s, &tree->nodes[i]))
-            status = dem_fail_memory(error);
-        crossings->complete = crossings->count <= max_pairs && s.work <= max_work;
-        if (s.work - told > WORK_BETWEEN_REPORTS) {
-            told = s.work;
-            if (dem_progress(ctx, "checking", (double)i / (double)tree->node_count))
+    *crossings = (dem_crossings){.complete = true};
+    for (int k = 0; k < SHARES; k++)
+        shares[k] = (search){.mesh = mesh, .tree = tree};
+    // SHARES shares at a time, whatever the number of threads
+    for (size_t at = 0; at < tree->node_count && status == DEM_OK && crossings->complete; at += SHARES * SHARE_NODES) {
+#pragma omp parallel for num_threads(threads) schedule(dynamic) if (threads > 1)
+        for (int k = 0; k < SHARES; k++) {
+            size_t begin = at + (size_t)k * SHARE_NODES, end = begin + SHARE_NODES;
+            end = end < tree->node_count ? end : tree->node_count;
+            search_share(&shares[k], begin, end, max_pairs, max_work - work);
+        }
+        for (int k = 0; k < SHARES && status == DEM_OK; k++) {
+            work += shares[k].work;
+            if (!take_in(&shares[k], crossings, &room))
+                status = dem_fail_memory(error);
+        }
+        crossings->complete = crossings->count <= max_pairs && work <= max_work;
+        if (status == DEM_OK && work - told > WORK_BETWEEN_REPORTS) {
+            told = work;
+            if (dem_progress(ctx, "checking", (double)at / (double)tree->node_count))
                 status = dem_fail(error, DEM_INTERRUPTED, "interrupted while checking the mesh");
         }
     }
+    for (int k = 0; k < SHARES; k++)
+        free(shares[k].found.pairs);
     if (status != DEM_OK) {
         free(crossings->pairs);
         *crossings = (dem_crossings){0};
