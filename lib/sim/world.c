@@ -410,6 +410,8 @@ static void contact_pass(dem_world *w, size_t begin, size_t end, double kick)
 // contacts with walls of one form from one block of 8 to another
 static void wall_blocks(dem_world *w, size_t form, size_t segment, size_t begin, size_t end, double kick)
 {
+    if (begin >= end)
+        return;
     dem_rows rows = world_rows(w);
     dem_contact_job job = {.columns = w->wall_contacts[form].columns,
                            .begin = begin,
@@ -418,8 +420,7 @@ static void wall_blocks(dem_world *w, size_t form, size_t segment, size_t begin,
                            .kick = kick,
                            .next_step = w->next_step,
                            .tally = &w->tallies[(1 + form) * w->segment_count + segment]};
-    if (begin < end)
-        w->wall_instance->walls[form](w->features, &rows, &job);
+    w->wall_instance->walls[form](w->features, &rows, &job);
 }
 
 // with meshes many blocks have no contact now
