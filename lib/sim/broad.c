@@ -9,10 +9,11 @@
 
 #include "base/status.h"
 #include "sim/bodies.h"
+#include "sim/pairs.h"
 #include "sim/population.h"
 #include "sim/slim.h"
 
-enum { LEVELS = 24, CELLS_LEAST = 4, SLACK = 16 };
+enum { LEVELS = 24, CELLS_LEAST = 4 };
 enum { BODIES_TO_SHARE = 512 };  // that are worth more than one thread
 
 static const double SKIN = 0.2;       // of the mean bounding radius; flat from 0.1 to 0.4
@@ -28,14 +29,10 @@ typedef struct level {
     size_t start_capacity;
 } level;
 
-typedef struct near_pair {
-    uint32_t a, b, image;
-} near_pair;
-
 // what a thread finds
 typedef struct finding {
     uint32_t *found;  // about one body
-    near_pair *near;
+    dem_near *near;
     size_t count, capacity;
     bool failed;
 } finding;
@@ -54,10 +51,9 @@ struct dem_search {
     int32_t *moved;
     finding *findings;  // [parts]
     int parts;
-    near_pair *near;  // of all parts: the only one's, or joined
-    near_pair *joined, *sorted;
+    dem_near *near;  // of all parts: the only one's, or joined
+    dem_near *joined;
     size_t near_count;
-    uint32_t *first;  // [bodies + 1] of the pairs to come
 };
 typedef struct dem_search search;
 
@@ -158,8 +154,7 @@ dem_status dem_search_create(dem_world *w, dem_error *error)
     s->parts = n > BODIES_TO_SHARE ? w->threads : 1;
     s->findings = dem_alloc_zero((size_t)s->parts, sizeof *s->findings);
     s->moved = dem_alloc_zero(w->periodic ? 3 * n + 3 : 0, sizeof *s->moved);
-    s->first = dem_alloc_zero(n + 1, sizeof *s->first);
-    return s->first && s->findings && s->moved ? DEM_OK : dem_fail_memory(error);
+    return s->findings && s->moved ? DEM_OK : dem_fail_memory(error);
 }
 
 static bool make_columns(search *s)
@@ -185,13 +180,13 @@ static void release_columns(search *s)
         free(s->findings[i].near);
         s->findings[i] = (finding){0};
     }
-    void *all[] = {s->x, s->y, s->z, s->r, s->id, s->cell, s->level_of, s->joined, s->sorted};
+    void *all[] = {s->x, s->y, s->z, s->r, s->id, s->cell, s->level_of, s->joined};
     for (size_t i = 0; i < sizeof all / sizeof *all; i++)
         free(all[i]);
     s->x = s->y = s->z = s->r = NULL;
     s->id = s->cell = NULL;
     s->level_of = NULL;
-    s->near = s->joined = s->sorted = NULL;
+    s->near = s->joined = NULL;
 }
 
 void dem_search_destroy(dem_search *s)
@@ -201,7 +196,6 @@ void dem_search_destroy(dem_search *s)
     release_columns(s);
     free(s->findings);
     free(s->moved);
-    free(s->first);
     for (int i = 0; i < LEVELS; i++)
         free(s->levels[i].start);
     free(s);
@@ -339,7 +333,7 @@ static bool add_near(const search *s, finding *f, uint32_t a, uint32_t b, uint32
         return true;
     if (!dem_grow(&f->near, &f->capacity, f->count, sizeof *f->near))
         return false;
-    f->near[f->count++] = (near_pair){a, b, image};
+    f->near[f->count++] = (dem_near){a, b, image};
     return true;
 }
 
@@ -439,209 +433,7 @@ static dem_status look_from_all(search *s, dem_error *error)
     return DEM_OK;
 }
 
-// ---- pairs
-
-static int by_partner(const void *a, const void *b)
-{
-    const near_pair *p = a, *q = b;
-    if (p->b != q->b)
-        return p->b < q->b ? -1 : 1;
-    return p->image < q->image ? -1 : p->image > q->image;
-}
-
-static void sort_partners(near_pair *near, size_t count)
-{
-    if (count > 64) {
-        qsort(near, count, sizeof *near, by_partner);
-        return;
-    }
-    for (size_t i = 1; i < count; i++) {
-        near_pair v = near[i];
-        size_t j = i;
-        for (; j > 0 && by_partner(&near[j - 1], &v) > 0; j--)
-            near[j] = near[j - 1];
-        near[j] = v;
-    }
-}
-
-// by a; first[a] is where those of a begin
-static dem_status sort_near(search *s, uint32_t *first, const near_pair **sorted, dem_error *error)
-{
-    near_pair *near = s->near;
-    size_t n = s->w->bodies.count;
-    memset(first, 0, (n + 1) * sizeof *first);
-    for (size_t i = 0; i < s->near_count; i++)
-        first[s->near[i].a + 1]++;
-    for (size_t i = 0; i < n; i++)
-        first[i + 1] += first[i];
-    if (s->level_count > 1 || s->w->periodic) {
-        if (!(s->sorted = dem_alloc(s->near_count, sizeof *s->sorted)))
-            return dem_fail_memory(error);
-        for (size_t i = 0; i < s->near_count; i++)
-            s->sorted[first[s->near[i].a]++] = s->near[i];
-        memmove(first + 1, first, n * sizeof *first);
-        first[0] = 0;
-        near = s->sorted;
-    }
-    for (size_t i = 0; near && i < n; i++)
-        sort_partners(near + first[i], first[i + 1] - first[i]);
-    *sorted = near;
-    return DEM_OK;
-}
-
-// the image of an old pair after its bodies have been moved back; DEM_IMAGES: beyond all
-static uint32_t moved_image(const search *s, const dem_pair *p)
-{
-    if (!s->w->periodic)
-        return p->image;
-    int image[3];
-    image_of(p->image, image);
-    for (int k = 0; k < 3; k++) {
-        image[k] += s->moved[3 * p->b + (uint32_t)k] - s->moved[3 * p->a + (uint32_t)k];
-        if (abs(image[k]) > DEM_IMAGES_ASIDE)
-            return DEM_IMAGES;
-    }
-    return image_row(image[0], image[1], image[2]);
-}
-
-static bool make_links(dem_pairs *pairs, size_t bodies, size_t capacity)
-{
-    *pairs = (dem_pairs){.capacity = capacity,
-                         .items = dem_alloc(capacity, sizeof *pairs->items),
-                         .first = dem_alloc(bodies + 1, sizeof *pairs->first),
-                         .adjacency_first = dem_alloc(bodies + 1, sizeof *pairs->adjacency_first),
-                         .adjacency = dem_alloc(2 * capacity, sizeof *pairs->adjacency),
-                         .adjacency_limit = dem_alloc(2 * capacity, sizeof *pairs->adjacency_limit),
-                         .fresh = dem_alloc(capacity, sizeof *pairs->fresh)};
-    return pairs->items && pairs->first && pairs->adjacency_first && pairs->adjacency && pairs->adjacency_limit &&
-           pairs->fresh;
-}
-
-// Whether the new list may grow from the begin of the memory while the old one is read, which is moved to its end: no
-// new pair comes to stand where an old one has not been read.
-static bool in_place(const search *s, const dem_pairs *pairs)
-{
-    if (s->near_count > pairs->capacity || !pairs->first)
-        return false;
-    size_t gap = pairs->capacity - pairs->count;
-    for (size_t a = 0; a < s->w->bodies.count; a++)
-        if (s->first[a + 1] > gap + pairs->first[a])
-            return false;
-    return true;
-}
-
-void dem_pairs_release(dem_pairs *pairs)
-{
-    free(pairs->items);
-    free(pairs->first);
-    free(pairs->adjacency_first);
-    free(pairs->adjacency);
-    free(pairs->adjacency_limit);
-    free(pairs->fresh);
-}
-
-// Limits of the i-th pair until its links are made: in memory of the links.
-static void park(dem_pairs *pairs, size_t i, const double limits[2])
-{
-    memcpy(&pairs->adjacency[2 * i], &limits[0], sizeof *limits);
-    memcpy(&pairs->items[i].adjacent_a, &limits[1], sizeof *limits);
-}
-static void unpark(const dem_pairs *pairs, size_t i, double limits[2])
-{
-    memcpy(&limits[0], &pairs->adjacency[2 * i], sizeof *limits);
-    memcpy(&limits[1], &pairs->items[i].adjacent_a, sizeof *limits);
-}
-_Static_assert(offsetof(dem_pair, adjacent_b) == offsetof(dem_pair, adjacent_a) + sizeof(uint32_t),
-               "a limit is parked in both");
-
-// what is known of the pairs that stay; the segments of those that go with contacts, or are seen elsewhere, are dirty
-static void merge_pairs(search *s, const near_pair *near, const dem_pair *items, const double *old_limits,
-                        dem_pairs *pairs)
-{
-    const uint32_t *old = s->w->pairs.count ? s->w->pairs.first : NULL;
-    for (size_t a = 0; a < s->w->bodies.count; a++) {
-        size_t o = old ? old[a] : 0, o_end = old ? old[a + 1] : 0;
-        bool *dirty = &s->w->contacts.segments[a / DEM_SEGMENT].dirty;
-        for (size_t i = s->first[a]; i < s->first[a + 1]; i++) {
-            const near_pair *n = &near[i];
-            dem_pair pair = {.a = n->a, .b = n->b, .normal = {9}, .image = n->image};
-            double limits[2] = {-1, -1};
-            for (; o < o_end; o++) {
-                const dem_pair *p = &items[o];
-                uint32_t image = moved_image(s, p);
-                if (p->b > n->b || (p->b == n->b && image > n->image))
-                    break;
-                if (p->b == n->b && image == n->image) {
-                    pair = *p;
-                    pair.image = image;
-                    *dirty |= p->count && image != p->image;
-                    limits[0] = old_limits[p->adjacent_a];
-                    limits[1] = old_limits[p->adjacent_b];
-                    o++;
-                    break;
-                }
-                *dirty |= p->count > 0;
-            }
-            pairs->items[i] = pair;
-            park(pairs, i, limits);
-        }
-        for (; o < o_end; o++)
-            *dirty |= items[o].count > 0;
-    }
-}
-
-static void link_adjacency(const search *s, dem_pairs *pairs)
-{
-    size_t n = s->w->bodies.count;
-    uint32_t *first = pairs->adjacency_first;
-    memset(first, 0, (n + 1) * sizeof *first);
-    memset(pairs->fresh, 0, pairs->count * sizeof *pairs->fresh);
-    for (size_t i = 0; i < pairs->count; i++) {
-        first[pairs->items[i].a + 1]++;
-        first[pairs->items[i].b + 1]++;
-    }
-    for (size_t i = 0; i < n; i++)
-        first[i + 1] += first[i];
-    for (size_t i = 0; i < pairs->count; i++) {
-        dem_pair *p = &pairs->items[i];
-        double limits[2];
-        unpark(pairs, i, limits);
-        p->adjacent_a = first[p->a]++;
-        p->adjacent_b = first[p->b]++;
-        pairs->adjacency_limit[p->adjacent_a] = limits[0];
-        pairs->adjacency_limit[p->adjacent_b] = limits[1];
-    }
-    for (size_t i = 0; i < pairs->count; i++)
-        pairs->adjacency[pairs->items[i].adjacent_a] = pairs->adjacency[pairs->items[i].adjacent_b] = (uint32_t)i;
-    memmove(first + 1, first, n * sizeof *first);
-    first[0] = 0;
-}
-
-// in the memory of the old list where it will do
-static dem_status replace_pairs(search *s, dem_error *error)
-{
-    dem_pairs old = s->w->pairs, pairs = old;
-    const near_pair *near = NULL;
-    size_t n = s->w->bodies.count, at = 0;
-    DEM_TRY(sort_near(s, s->first, &near, error));
-    bool same = in_place(s, &old);
-    if (!same && !make_links(&pairs, n, s->near_count + s->near_count / SLACK + 1)) {
-        dem_pairs_release(&pairs);
-        return dem_fail_memory(error);
-    }
-    if (same) {
-        at = old.capacity - old.count;
-        memmove(old.items + at, old.items, old.count * sizeof *old.items);
-    }
-    pairs.count = s->near_count;
-    merge_pairs(s, near, old.items ? old.items + at : NULL, old.adjacency_limit, &pairs);
-    link_adjacency(s, &pairs);
-    memcpy(pairs.first, s->first, (n + 1) * sizeof *pairs.first);
-    if (!same)
-        dem_pairs_release(&old);
-    s->w->pairs = pairs;
-    return DEM_OK;
-}
+// ---- when a search is due
 
 static dem_vec3 then_of(const dem_bodies *b, size_t row)
 {
@@ -715,7 +507,7 @@ dem_status dem_broad_search(dem_world *w, dem_error *error)
     if (status == DEM_OK)
         status = look_from_all(s, error);
     if (status == DEM_OK)
-        status = replace_pairs(s, error);
+        status = dem_pairs_replace(w, s->near, s->near_count, s->level_count == 1, s->moved, error);
     release_columns(s);
     DEM_TRY(status);
     for (size_t i = 0; i < w->bodies.count; i++) {

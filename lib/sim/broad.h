@@ -35,6 +35,4 @@ static inline void image_of(uint32_t row, int image[3])
 /// Makes dem_world.shifts for a periodic domain. Errors: a side too short for the bodies.
 dem_status dem_broad_images(dem_world *world, dem_error *error);
 
-void dem_pairs_release(dem_pairs *pairs);
-
 #endif

@@ -10,6 +10,7 @@
 #include "sim/lists.h"
 #include "sim/measure.h"
 #include "sim/motion.h"
+#include "sim/pairs.h"
 #include "sim/place.h"
 #include "sim/population.h"
 #include "sim/refresh.h"
