@@ -12,7 +12,7 @@
 #include "sim/measure.h"
 #include "sim/population.h"
 
-enum { LAYOUT = 4 };
+enum { LAYOUT = 5 };
 
 static uint64_t hash_bytes(uint64_t hash, const void *bytes, size_t size)
 {
