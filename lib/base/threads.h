@@ -18,6 +18,15 @@ int dem_team_size(const dem_team *team);
 /// through. Only the thread that made the team may call it, and not from within work.
 void dem_team_run(dem_team *team, void (*work)(void *user, int part), void *user);
 
+/// The same for work in `parts` that is 1 or the team's size: one part is done without the team, which may be NULL then.
+static inline void dem_team_share(dem_team *team, int parts, void (*work)(void *user, int part), void *user)
+{
+    if (parts > 1)
+        dem_team_run(team, work, user);
+    else
+        work(user, 0);
+}
+
 /// Inside of work: waits until every part has come here. What parts wrote before is seen by all behind.
 void dem_team_meet(dem_team *team);
 

@@ -393,25 +393,15 @@ static size_t part_begin(const search *s, int part)
 static void look_part(void *user, int part)
 {
     const search *s = user;
-    if (part >= s->parts)
-        return;
     finding *f = &s->findings[part];
     for (size_t i = part_begin(s, part); i < part_begin(s, part + 1) && !f->failed; i++)
         f->failed = !body_absent(&s->w->bodies, i) && !look_from(s, f, (uint32_t)i);
 }
 
-static void in_parts(search *s, void (*work)(void *user, int part))
-{
-    if (s->parts > 1)
-        dem_team_run(s->w->team, work, s);
-    else
-        work(s, 0);
-}
-
 // what all parts have found, in the order of bodies
 static dem_status look_from_all(search *s, dem_error *error)
 {
-    in_parts(s, look_part);
+    dem_team_share(s->w->team, s->parts, look_part, s);
     s->near_count = 0;
     for (int i = 0; i < s->parts; i++) {
         if (s->findings[i].failed)

@@ -412,8 +412,6 @@ typedef struct rebuilding {
 static void rebuild_part(void *user, int part)
 {
     rebuilding *r = user;
-    if (part >= r->parts)
-        return;
     list l = list_of(&r->w->contacts.columns);
     size_t parts = (size_t)r->parts, from = r->count * (size_t)part / parts, to = r->count * ((size_t)part + 1) / parts;
     for (size_t i = from; i < to; i++)
@@ -429,12 +427,10 @@ static void rebuild_part(void *user, int part)
 static bool for_segments(dem_world *w, const size_t *segments, size_t count,
                          bool (*work)(dem_world *w, size_t segment, list *l))
 {
-    rebuilding r = {.w = w, .segments = segments, .count = count, .work = work, .parts = 1};
-    if (count > SEGMENTS_TO_SHARE && w->threads > 1) {
-        r.parts = w->threads;
-        dem_team_run(w->team, rebuild_part, &r);
-    } else if (count)
-        rebuild_part(&r, 0);
+    rebuilding r = {.w = w, .segments = segments, .count = count, .work = work};
+    r.parts = count > SEGMENTS_TO_SHARE ? w->threads : 1;
+    if (count)
+        dem_team_share(w->team, r.parts, rebuild_part, &r);
     return !r.failed;
 }
 

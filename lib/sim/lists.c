@@ -67,8 +67,6 @@ static void check_part(void *user, int part)
 {
     checking *c = user;
     size_t count = c->w->asked_count, k = count * (size_t)part / c->parts, end = count * ((size_t)part + 1) / c->parts;
-    if ((size_t)part >= c->parts)
-        return;
     while (k < end && !fault_of(c->w, c->w->asked[k]))
         k++;
     size_t first = atomic_load(&c->first);
@@ -80,10 +78,7 @@ static dem_status check_bodies(dem_world *w, dem_error *error)
 {
     checking c = {.w = w, .parts = w->asked_count > BODIES_TO_SHARE ? (size_t)w->threads : 1};
     atomic_init(&c.first, w->asked_count);
-    if (c.parts > 1)
-        dem_team_run(w->team, check_part, &c);
-    else
-        check_part(&c, 0);
+    dem_team_share(w->team, (int)c.parts, check_part, &c);
     size_t first = atomic_load(&c.first);
     if (first == w->asked_count)
         return DEM_OK;

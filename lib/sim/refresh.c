@@ -224,8 +224,6 @@ static void expire_part(void *user, int part)
     const double *pair_limits = pairs->adjacency_limit;
     const uint32_t *first = pairs->adjacency_first;
     size_t parts = (size_t)w->fresh_parts, count = w->asked_count;
-    if ((size_t)part >= parts)
-        return;
     dem_candidates *c = &w->candidates[part];
     c->expired_count = 0;
     c->failed = false;
@@ -255,19 +253,11 @@ static int parts_for(const dem_world *w, size_t count)
     return count > LOOKS_TO_SHARE ? w->threads : 1;
 }
 
-static void in_parts(dem_world *w, void (*work)(void *user, int part))
-{
-    if (w->fresh_parts > 1)
-        dem_team_run(w->team, work, w);
-    else
-        work(w, 0);
-}
-
 // a pair that both bodies ask for is taken once, by the one that comes first
 static bool collect_expired(dem_world *w)
 {
     w->fresh_parts = parts_for(w, w->asked_count);
-    in_parts(w, expire_part);
+    dem_team_share(w->team, w->fresh_parts, expire_part, w);
     w->fresh_count = 0;
     for (int part = 0; part < w->fresh_parts; part++) {
         const dem_candidates *c = &w->candidates[part];
@@ -309,8 +299,6 @@ static void look_at_part(void *user, int part)
 {
     dem_world *w = user;
     size_t parts = (size_t)w->fresh_parts, count = w->fresh_count;
-    if ((size_t)part >= parts)
-        return;
     dem_candidates *c = &w->candidates[part];
     c->count = 0;
     c->failed = false;
@@ -327,7 +315,7 @@ dem_status dem_refresh(dem_world *w, dem_error *error)
     if (!collect_expired(w))
         return dem_fail_memory(error);
     w->fresh_parts = parts_for(w, w->fresh_count);
-    in_parts(w, look_at_part);
+    dem_team_share(w->team, w->fresh_parts, look_at_part, w);
     for (int part = 0; part < w->fresh_parts; part++)
         if (w->candidates[part].failed)
             return dem_fail_memory(error);

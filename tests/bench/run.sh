@@ -346,7 +346,7 @@ if [ -z "$quick" ]; then
     row "endless bed k=8" sweep 25 40
     exponent
     # 12 million, 3 GB on disk and half an hour; only when asked for
-    [ -z "$wanted" ] || row "20 GB k=8" sweep 86 140 10 20
+    [ -z "$wanted" ] || row "largest k=8" sweep 86 140 10 20
 fi
 row "writing frames" writing
 row "start-up" start_up
