@@ -229,10 +229,6 @@ DEM_INLINE widef widef_sqrt(widef a)
 {
     return _mm512_sqrt_ps(a);
 }
-DEM_INLINE uint32_t widef_less(widef a, widef b)
-{
-    return _mm512_cmp_ps_mask(a, b, _CMP_LT_OQ);
-}
 DEM_INLINE widef_mask widef_below(widef a, widef b)
 {
     return _mm512_cmp_ps_mask(a, b, _CMP_LT_OQ);
@@ -434,10 +430,6 @@ DEM_INLINE widef widef_sqrt(widef a)
 {
     return _mm256_sqrt_ps(a);
 }
-DEM_INLINE uint32_t widef_less(widef a, widef b)
-{
-    return (uint32_t)_mm256_movemask_ps(_mm256_cmp_ps(a, b, _CMP_LT_OQ));
-}
 DEM_INLINE widef_mask widef_below(widef a, widef b)
 {
     return _mm256_cmp_ps(a, b, _CMP_LT_OQ);
@@ -631,10 +623,6 @@ DEM_INLINE widef widef_sqrt(widef a)
 {
     return sqrtf(a);
 }
-DEM_INLINE uint32_t widef_less(widef a, widef b)
-{
-    return a < b;
-}
 DEM_INLINE widef_mask widef_below(widef a, widef b)
 {
     return a < b;
@@ -748,9 +736,10 @@ DEM_INLINE wide wide_exp(wide x)
     return wide_or_zero(some, sum * wide_power_of_two(k));
 }
 
-/// The lanes behind `count`, of DEM_WIDTH_FLOAT, taken out.
-DEM_INLINE uint32_t first_lanes(uint32_t bits, size_t count)
+/// The bits of the first `count` lanes, or of all.
+DEM_INLINE uint32_t first_lanes(widef_mask m, size_t count)
 {
+    uint32_t bits = widef_bits(m);
     return count >= DEM_WIDTH_FLOAT ? bits : bits & ((1u << count) - 1);
 }
 

@@ -42,7 +42,7 @@ DEM_INLINE void low_spheres(const dem_cull_job *job, const float *height, float 
     const float *m = b->axes;
     out->count = 0;
     for (size_t i = 0; i < b->padded; i += DEM_WIDTH_FLOAT) {
-        uint32_t bits = widef_less(widef_load(height + i), widef_all(most));
+        uint32_t bits = widef_bits(widef_below(widef_load(height + i), widef_all(most)));
         if (!bits)
             continue;
         widef x = widef_load(b->x + i), y = widef_load(b->y + i), z = widef_load(b->z + i);
@@ -75,8 +75,8 @@ DEM_INLINE void compare_sphere(dem_cull_job *job, uint32_t sphere, const placed_
         widef dx = widef_load(b->x + j) - widef_all(px), dy = widef_load(b->y + j) - widef_all(py);
         widef dz = widef_load(b->z + j) - widef_all(pz);
         widef gap = widef_sqrt(dx * dx + dy * dy + dz * dz) - widef_load(b->r + j) - widef_all(r);
-        uint32_t better = first_lanes(widef_less(gap, widef_all(nearest->gap)), b->count - j);
-        uint32_t near = first_lanes(widef_less(gap, widef_all(margin)), b->count - j);
+        uint32_t better = first_lanes(widef_below(gap, widef_all(nearest->gap)), b->count - j);
+        uint32_t near = first_lanes(widef_below(gap, widef_all(margin)), b->count - j);
         if (better) {
             float lane[DEM_WIDTH_FLOAT];
             widef_store(lane, gap);
@@ -113,7 +113,7 @@ DEM_INLINE void cull_pair(dem_cull_job *job)
     low_spheres(job, height_b, top + margin, &b);
     nearest_pair nearest = {.gap = FAR_AWAY};
     for (size_t i = 0; i < job->a.padded; i += DEM_WIDTH_FLOAT) {
-        uint32_t bits = widef_less(widef_all(bottom - margin), widef_load(height_a + i));
+        uint32_t bits = widef_bits(widef_below(widef_all(bottom - margin), widef_load(height_a + i)));
         for (; bits; bits &= bits - 1)
             compare_sphere(job, (uint32_t)i + (uint32_t)__builtin_ctz(bits), &b, margin, &nearest);
     }
@@ -136,7 +136,7 @@ DEM_INLINE void scan_cells(dem_scan_job *job)
     for (size_t i = job->begin; i < job->end; i += DEM_WIDTH_FLOAT) {
         widef dx = widef_load(job->x + i) - x, dy = widef_load(job->y + i) - y, dz = widef_load(job->z + i) - z;
         widef far = widef_load(job->r + i) + reach;
-        uint32_t bits = first_lanes(widef_less(dx * dx + dy * dy + dz * dz, far * far), job->end - i);
+        uint32_t bits = first_lanes(widef_below(dx * dx + dy * dy + dz * dz, far * far), job->end - i);
         for (; bits; bits &= bits - 1)
             job->found[job->count++] = job->id[i + (size_t)__builtin_ctz(bits)];
     }
